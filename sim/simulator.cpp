@@ -27,7 +27,7 @@
 namespace sim {
 namespace {
 
-// No more than the machine has: TBB would complain on stderr.
+// Limited to the machine's threads: TBB warns on stderr beyond.
 int Threads(int jobs) {
   if (jobs < 1) throw std::invalid_argument("simulator: jobs must be at least 1, not " + std::to_string(jobs));
   return std::min(jobs, tbb::info::default_concurrency());
@@ -42,12 +42,12 @@ double LongestExposure(const SensorParams& s) {
   return s.auto_exposure.on ? std::max(s.exposure_s, s.auto_exposure.longest_s) : s.exposure_s;
 }
 
-// What an object is sampled with, where its motion is sampled: no other object's noise, nor the camera's.
+// Seed of an object's sampled motion: independent of other objects' noise and the camera's.
 std::uint64_t ObjectSeed(std::uint64_t seed, std::size_t object) {
   return SeedOf(RandomWords(seed, Stream::object_motion, static_cast<std::uint32_t>(object), 0, 0));
 }
 
-// What shines by mirroring and is shown as if it did not.
+// Warns of specular surfaces that are rendered without reflection.
 void WarnOfGloss(const Scene& scene, const RenderParams& params, std::vector<std::string>& warnings) {
   const bool mirrors = params.reflections && params.engine == Engine::ray_tracer;
   WarningList list;
@@ -112,7 +112,7 @@ WorldExtent ExtentOf(const Scene& scene) {
   return extent;
 }
 
-// Long enough for all frames.
+// Trajectory that covers all frames.
 std::unique_ptr<Trajectory> MakeMotion(const Scenario& s, const MotionDescription& motion, std::uint64_t seed,
                                        const Surroundings* around = nullptr) {
   return MakeTrajectory(motion, seed, LastStamp(s), Reach(s), around);
@@ -127,7 +127,7 @@ std::unique_ptr<Trajectory> MakeObjectMotion(const Scenario& s, std::size_t obje
   }
 }
 
-// What lies between the world and the sensor.
+// Optical elements between the world and the sensor.
 struct Optics {
   Optics(const CameraParams& params, const OpticsParams& optics) : camera(params), vignetting(optics, camera) {}
   Camera camera;
@@ -139,11 +139,11 @@ struct Optics {
 std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& s) {
   if (s.points || !NeedsSurroundings(s.motion)) return MakeMotion(s, s.motion, s.seed);
   Scene scene = LoadScene(s.world);
-  scene.objects.clear();  // they are not asked about
+  scene.objects.clear();  // static geometry only
   return MakeMotion(s, s.motion, s.seed, SurroundingsOf(scene, RayScene(scene)).get());
 }
 
-// What the cameras of a rig have in common: made once.
+// Common parts of a rig's cameras, made once.
 struct Simulator::World {
   World(const Scenario& s, int jobs) : arena(Threads(jobs)) {
     Scene scene = arena.execute([&] { return LoadScene(s.world); });
@@ -180,7 +180,7 @@ struct Simulator::World {
   std::vector<std::string> warnings;
   WorldExtent extent;
   std::unique_ptr<Renderer> renderer;
-  std::unique_ptr<Renderer> exact;  // where the renderer cannot be asked what a pixel sees
+  std::unique_ptr<Renderer> exact;  // for exact queries, where the renderer has none
   std::vector<std::string> mesh_names, object_names;
   Labels labels;
   std::vector<std::shared_ptr<const Trajectory>> object_motions;
@@ -309,7 +309,7 @@ Truth Simulator::ObjectTruthAt(std::size_t object, std::int64_t index) const {
 }
 
 ExposureSetting Simulator::SettingOf(std::int64_t index) const {
-  StampNs(index);  // throws where there is no such frame
+  StampNs(index);  // throws for an invalid index
   return parts_->Setting(index);
 }
 

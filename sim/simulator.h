@@ -34,7 +34,7 @@ struct Frame {
 // Throws as MakeTrajectory and LoadScene do.
 std::unique_ptr<Trajectory> TrajectoryOf(const Scenario& scenario);
 
-// Bounding box of what stands still, in W [m]; triangles; textures in memory.
+// Bounding box of the static world, in W [m]; number of triangles; textures in memory.
 struct WorldExtent {
   glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
   std::size_t triangles = 0, texture_bytes = 0;
@@ -58,7 +58,7 @@ class Simulator {
   // world is loaded and baked once.
   std::vector<Simulator> Cameras() const;
   std::size_t camera_index() const;
-  // Contents of the world that are readable but probably unintended.
+  // Properties of the world that are valid but probably unintended.
   const std::vector<std::string>& warnings() const;
 
   // Pure functions of the scenario, its seed and the index in [0, frame_count); std::out_of_range otherwise. They may
@@ -72,7 +72,7 @@ class Simulator {
   // By ray intersection, with either renderer.
   std::vector<float> Depth(std::int64_t index) const;
 
-  // Camera trajectory, and the surface points that pixels see. Both live as long as the simulator.
+  // Camera trajectory, and the surface points of pixels. Both live as long as the simulator.
   const Trajectory& trajectory() const;
   std::shared_ptr<const Trajectory> body() const;  // of a rig; else the camera's
   const SurfaceTracer& surfaces() const;
@@ -80,7 +80,7 @@ class Simulator {
   // Of the world's meshes, as SurfaceTracer::MeshOf counts them; of an object's "OBJECT/MESH".
   const std::vector<std::string>& mesh_names() const;
   const Labels& labels() const;
-  // Moving objects, and their state at a frame's stamp: O in the place of C.
+  // Moving objects, and their state at a frame's stamp: frame O in place of C.
   const std::vector<std::string>& object_names() const;
   Truth ObjectTruthAt(std::size_t object, std::int64_t index) const;
 

@@ -13,8 +13,8 @@
 
 namespace vo {
 
-// Member of the family that params.filter.sampled names. Throws std::invalid_argument listing every bad parameter, else
-// every invalid part of the prior.
+// Filter of params.filter.sampled. Throws std::invalid_argument listing every invalid parameter, else every invalid
+// part of the prior.
 std::unique_ptr<Filter> MakeFilter(const Params& params, const Prior& prior, std::uint64_t seed);
 
 Estimate MakeEstimate(const Filter& filter, const ScaleAmbiguity& scale, std::int64_t stamp_ns,

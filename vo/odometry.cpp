@@ -11,7 +11,7 @@ namespace vo {
 
 namespace {
 
-// A start whose velocity the prior does not know well is made twice.
+// Prior with a larger velocity covariance, for the first of the two trackers of a start.
 Prior WithVagueVelocity(Prior prior) {
   constexpr double kFactor = 4;  // of the standard deviation
   prior.velocity_covariance *= kFactor * kFactor;
@@ -20,9 +20,9 @@ Prior WithVagueVelocity(Prior prior) {
 
 }  // namespace
 
-// With an unknown motion, two trackers make the start, with a vague prior of the velocity and with that given: the first
-// may take a wrong mode where the camera hardly moves at first, the second where it moves quickly. One answers, the
-// other takes over where its matches fit clearly better; the start over, one goes on.
+// With an unknown motion, two trackers process the start, with a vague prior of the velocity and with that given: the
+// first may converge to a wrong mode where the camera hardly moves at first, the second where it moves quickly. One
+// answers, the other takes over where its matches fit clearly better; after the start one continues.
 struct Odometry::Impl {
   Impl(const Camera& camera_, const Params& params_, const Prior& prior_, std::uint64_t seed_)
       : camera(camera_), params(params_), prior(prior_), seed(seed_) {
@@ -85,8 +85,8 @@ Estimate Odometry::Track(const PreparedFrame& frame) {
   return calibration_ ? Calibrated(frame, estimate) : estimate;
 }
 
-// The frames until then are tracked again with the first readout time that is known: a map that was begun with another
-// is sheared. A later change holds from the next frame on.
+// The frames so far are tracked again with the first estimated readout time: a map that was begun with another one is
+// sheared. A later change takes effect from the next frame on.
 Estimate Odometry::Calibrated(const PreparedFrame& frame, const Estimate& estimate) {
   Stopwatch watch;
   const bool starting = calibration_->starting();
@@ -103,7 +103,7 @@ Estimate Odometry::Calibrated(const PreparedFrame& frame, const Estimate& estima
   return out;
 }
 
-// Whether it is another one from now on.
+// Sets the estimated readout time; whether it has changed.
 bool Odometry::ChangeReadout() {
   const std::optional<double> readout_s = calibration_->ChangeReadout();
   if (!readout_s) return false;
@@ -111,7 +111,7 @@ bool Odometry::ChangeReadout() {
   return true;
 }
 
-// With the readout time that impl_ has now. Where the scale is not known, the answers keep that of those already given.
+// With the readout time that impl_ has now. Where the scale is unknown, the answers keep that of those already given.
 Estimate Odometry::TrackFirstFramesAgain() {
   constexpr int kRounds = 3;
   Estimate last;

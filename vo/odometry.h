@@ -30,9 +30,9 @@ class Odometry {
   // The same for a frame that was prepared elsewhere (ReadAhead).
   Estimate Track(const PreparedFrame& frame);
 
-  // Poses given more images than their answers were, in order up to the present frame; empty unless this Track found
-  // them. Where the start ends (params.filter.start_window): of its frames, from the first that the map refers to.
-  // Where a readout time is first known: of all frames. Later answers continue these poses, in their scale.
+  // Poses revised by later images, in order up to the present frame; empty unless this Track produced them. Where the
+  // start ends (params.filter.start_window): of its frames, from the first that the map refers to. Where a readout time
+  // is first estimated: of all frames. Later answers continue these poses, in their scale.
   const std::vector<StampedPose>& Reissued() const;
   std::vector<MapPoint> Map() const;
   const std::vector<FeatureView>& Features() const;

@@ -1,6 +1,6 @@
 // Scale ambiguity of one camera, added to a filter's answer. All lengths from the start position have an unknown common
-// factor exp(-eta), eta ~ N(0, s^2); images and angles are invariant to it, so that the filter can ignore it. A filter
-// alone is over-confident here: it takes the depth priors for independent.
+// factor exp(-eta), eta ~ N(0, s^2); images and angles are invariant to it, so that the filter can ignore it. The
+// filter's own covariance is over-confident here: it treats the depth priors as independent.
 // Source:  log-normal moments: E exp(-eta) = exp(s^2 / 2), E exp(-2 eta) = exp(2 s^2). A length x with covariance P has
 //          the second moment exp(2 s^2) P + (exp(2 s^2) - 2 exp(s^2 / 2) + 1) x x' about x.
 // Units:   metres, in W; covariances of (dp in W, dphi in C, dv in W, dw in C).

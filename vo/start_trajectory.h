@@ -1,5 +1,5 @@
-// Trajectory of the start: while the start lasts each frame is answered from the images until then; at its end all
-// images of the start give its poses anew, as one re-issued trajectory in the scale of the answers. Private to vo.
+// Trajectory of the start: during the start each frame is answered from the images so far; at its end all images of the
+// start give its poses anew, as one re-issued trajectory in the scale of the answers. Private to vo.
 #pragma once
 
 #include <cstdint>

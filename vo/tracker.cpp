@@ -170,8 +170,8 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   diagnostics.ms_features += watch.Lap();
 }
 
-// Start with the present frame where no landmark of the first is found, at the pose of the prior. What the camera may
-// have moved until then stays in the covariance of all answers to come.
+// Restarts with the present frame where no landmark of the first is found, at the pose of the prior. The possible
+// motion until then is added to the covariance of all later answers.
 void Tracker::BeginAgain(const PreparedFrame& frame, Association& association, FrameDiagnostics& diagnostics) {
   filter_.Update({});
   pose_before_start_ += filter_.belief().covariance.topLeftCorner<6, 6>();
@@ -200,9 +200,9 @@ void Tracker::RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& d
 // Correction of the path where landmarks that were not matched for a while are recognised.
 std::optional<PathCorrection> Tracker::Relocalise(const PreparedFrame& frame, const Association& association,
                                                   bool failed) const {
-  constexpr int kEvery = 6;            // [frames]
-  constexpr double kOlder = 0.1;       // of the matches: they tie the path to the part of the map that was recognised
-  constexpr double kDrift = 0.1;       // most of the path since then, where the prediction has not failed
+  constexpr int kEvery = 6;       // [frames]
+  constexpr double kOlder = 0.1;  // of the matches, enough to tie the path to the recognised part of the map
+  constexpr double kDrift = 0.1;  // largest relative drift of the path since then, where the prediction has not failed
   constexpr double kDisplaced_px = 4;  // median, below which the ordinary search finds them
   if (filter_.answer().initialising) return std::nullopt;
   if (!failed && frames_ % kEvery != 0) return std::nullopt;
@@ -214,7 +214,7 @@ std::optional<PathCorrection> Tracker::Relocalise(const PreparedFrame& frame, co
     const auto older = std::ranges::count_if(association.matches, [&](const Match& m) { return m.landmark < first; });
     return static_cast<double>(older) > kOlder * static_cast<double>(association.matches.size());
   };
-  if (!failed && tied(unseen[Relocaliser::kLeastInliers - 1] + 1)) return std::nullopt;  // whichever the inliers are
+  if (!failed && tied(unseen[Relocaliser::kLeastInliers - 1] + 1)) return std::nullopt;  // whatever the inliers
   const std::vector<Filter::LandmarkBelief> beliefs = filter_.LandmarkBeliefs();
   std::vector<KnownPoint> points;
   for (const int n : unseen) points.push_back({&records_[n].appearance.descriptor, beliefs[n].X_W});
@@ -239,8 +239,8 @@ std::optional<PathCorrection> Tracker::Relocalise(const PreparedFrame& frame, co
   return PathCorrection{found->pose, first};
 }
 
-// Where the image shows features, and none of the map's. What the filter samples next has no memory of the present
-// covariance, once the particles are resampled.
+// Loss of all landmarks: the image has features, but none of the map's. After resampling the next samples are
+// independent of the present covariance, which is therefore kept.
 void Tracker::LoseLandmarks() {
   for (LandmarkRecord& record : records_) record.lost = true;
   pose_before_loss_ = known_before_loss_ + filter_.belief().covariance.topLeftCorner<6, 6>();
@@ -251,8 +251,8 @@ void Tracker::Update(std::span<const Match> matches) {
   if (!matches.empty()) since_update_ = {0, VelocityCovariance()};
 }
 
-// Prior of new landmarks: the median depth of those in view, whose map may have any scale. Kept where too few are
-// known.
+// Prior of new landmarks: the median depth of those in view, whose map may have any scale. Unchanged where too few
+// depths are known.
 void Tracker::UpdateTypicalDepth(std::span<const Match> matches, std::span<const Filter::LandmarkBelief> beliefs) {
   constexpr double kRelativeSigma = 1.4;
   constexpr std::size_t kEnough = 8;
@@ -315,7 +315,7 @@ FirstView Tracker::AddRecord(const NewFeature& feature, const PreparedFrame& fra
   views_.push_back(
       {record.id, pixel, pixel, Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero(), FeatureView::Status::fresh});
   FirstView view = FirstSeen(shutter_.Row(pixel), filter_.belief().pose, velocity);
-  // Later views are registered to the patch of the first: its error is that of the point that the patch follows.
+  // Later views are registered to the patch of the first: its error is that of the point in the patch.
   const FeatureParams& features = params_.features;
   view.R = PixelNoise(camera_.LensJacobian(view.ray),
                       features.noise != MatchNoise::constant ? features.first_view_px : features.sigma_px);

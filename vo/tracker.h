@@ -1,5 +1,5 @@
-// Odometry from one start: the filter with its map of landmarks, the association of each image, and what follows from
-// both. Private to Odometry, which makes a start with two of them.
+// Odometry from one start: the filter with its map of landmarks, and the association of each image. Private to
+// Odometry, which tracks a start with two of them.
 // Source:  docs/algorithm.md; Algorithm 1.
 #pragma once
 
@@ -41,7 +41,7 @@ class Tracker {
   void SetReadout(double readout_s);
   // The answers keep their scale although the filter's path has all lengths times `change`.
   void KeepScale(double change);
-  // As it was before its first frame.
+  // A tracker in the state before its first frame.
   Tracker Restarted() const;
 
  private:
@@ -79,7 +79,7 @@ class Tracker {
   int budget_;                                   // landmarks of known depth to search for in the next
   bool has_matched_ = false;                     // some frame
   Matrix6 pose_before_start_ = Matrix6::Zero();  // covariance of the path from the first image to the start
-  // Of the pose at which the landmarks since the last loss began; before the loss that lasts.
+  // Covariance of the pose at which the landmarks since the last loss began; of the pose before the present loss.
   Matrix6 pose_before_loss_ = Matrix6::Zero(), known_before_loss_ = Matrix6::Zero();
   std::optional<std::int64_t> last_stamp_ns_;
   SinceUpdate since_update_;

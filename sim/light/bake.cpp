@@ -29,11 +29,11 @@ double LongestSide(const RayScene& rays, std::uint32_t t) {
   return longest;
 }
 
-// Samples so far apart are taken for spacing_m.
+// Largest spacing that counts as spacing_m.
 double Most(double spacing_m) { return spacing_m * (1 + 1e-6); }
 
-// The place and normal of a sample, rounded: what has the same key has the same random numbers, and is the same sample
-// unless something is in between (the edge of a floor that goes on behind a wall): then they differ in the last number.
+// Position and normal of a sample, rounded: samples of equal key have equal random numbers and are merged, unless a
+// surface is in between (the edge of a floor that continues behind a wall): then they differ in the last number.
 using SampleKey = std::array<std::int64_t, 7>;  // x, y, z, normal, other
 
 std::uint64_t Mix(std::uint64_t h, std::uint64_t word) {  // SplitMix64's finaliser (Steele, Lea and Flood 2014)
@@ -129,7 +129,7 @@ class Baker {
     return log2;
   }
 
-  // The index of the sample that this is, or as which it becomes known.
+  // The index of the equal sample, or of this one, newly added.
   std::uint32_t IndexOf(const Sample& sample, std::unordered_map<SampleKey, std::uint32_t, HashKey>& known) {
     SampleKey key = sample.key;
     for (;; ++key.back()) {

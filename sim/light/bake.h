@@ -1,4 +1,4 @@
-// Baking of irradiance: the indirect light of what stands still, and its lamps where asked, once for all frames.
+// Baking of irradiance for all frames: indirect light of static surfaces and, optionally, light of lamps.
 // Private to sim.
 #pragma once
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kVersion = 1;  // of the file and of the computation: another number, another name
+constexpr std::uint64_t kVersion = 1;  // of the file and of the computation; part of the file's name
 constexpr std::array<char, 20> kMagic{"vobench baked light"};
 
 class Hasher {
@@ -55,7 +55,7 @@ class Hasher {
 
 struct HashLight {
   Hasher& hasher;
-  void operator()(const AmbientLight&) const {}  // is left out of baked light
+  void operator()(const AmbientLight&) const {}  // not part of baked light
   void operator()(const SunLight& l) const { hasher.Values(l.direction, l.irradiance); }
   void operator()(const PointLight& l) const { hasher.Values(l.position, l.intensity), Lamp(l.flicker); }
   void operator()(const RectLight& l) const {

@@ -18,12 +18,12 @@ namespace sim {
 
 using LightHash = std::array<std::uint64_t, 2>;
 
-// XXH3 with 128 bits (Collet): not against malice.
+// 128-bit XXH3 (Collet), which is not cryptographic.
 LightHash HashOfLight(const Scene& scene, LightMode mode, const BakeParams& params);
 
 std::filesystem::path LightFile(const std::filesystem::path& folder, const LightHash& hash);
 
-// Throws std::runtime_error that names the file: when it cannot be written; when it is not what it should be.
+// Throws std::runtime_error naming the file when it cannot be written or is not a valid cache file of this hash.
 void WriteLight(const std::filesystem::path& file, const LightHash& hash, const BakedLight& light);
 BakedLight ReadLight(const std::filesystem::path& file, const LightHash& hash);
 
@@ -32,11 +32,11 @@ BakedLight ReadLight(const std::filesystem::path& file, const LightHash& hash);
 BakedLight CachedLight(const Scene& scene, const RayScene& rays, LightMode mode, const BakeParams& params,
                        const std::vector<std::filesystem::path>& folders, std::vector<std::string>& warnings);
 
-// Gives the ray tracer's tables of the scene the light of CachedLight; none, where `mode` is direct. Appends BakeWarnings
-// too. Parallel in the caller's task arena.
+// Sets the light of CachedLight in the ray tracer's tables; nothing where `mode` is direct. Appends BakeWarnings too.
+// Parallel in the caller's task arena.
 void AddLight(const Scene& scene, LightMode mode, const BakeParams& params,
               const std::vector<std::filesystem::path>& folders, RayScene& rays, std::vector<std::string>& warnings);
-// New tables with it.
+// New scene tables with that light.
 std::unique_ptr<RayScene> LitScene(const Scene& scene, LightMode mode, const BakeParams& params,
                                    const std::vector<std::filesystem::path>& folders,
                                    std::vector<std::string>& warnings);

@@ -33,7 +33,7 @@ double Strength(const glm::dvec3& color) { return color.x + color.y + color.z; }
 
 }  // namespace
 
-// What a ray met.
+// Intersection of a ray.
 struct PathTracer::Met {
   std::uint32_t triangle;
   float u, v;
@@ -41,7 +41,7 @@ struct PathTracer::Met {
   LightPoint point;  // on the side from which the ray came
 };
 
-// The way from a point to a lamp: `light` is irradiance / pi were nothing in between.
+// Connection from a point to a lamp: `light` is irradiance / pi without occlusion.
 struct PathTracer::Reach {
   glm::dvec3 light{0.0};
   glm::dvec3 to{0.0};  // W: the lamp's point, or the direction to the sun
@@ -108,7 +108,8 @@ bool PathTracer::Trace(const LightPoint& from, const glm::dvec3& direction, Met&
   return true;
 }
 
-// The texel nearest to where the ray met, of the level whose texels are as wide as the path: paths together filter it.
+// The texel nearest to the intersection, of the level whose texels are as wide as the path: the mean over paths filters
+// it.
 glm::dvec3 PathTracer::LookUp(int picture, const Met& met, double width) const {
   const Texture& texture = scene_.textures[static_cast<std::size_t>(picture)];
   const double footprint =
@@ -133,7 +134,7 @@ glm::dvec3 PathTracer::Albedo(const Met& met, double width) const {
 
 glm::dvec3 PathTracer::Emission(const Met& met, double width) const {
   const std::size_t index = rays_.MaterialIndex(met.triangle);
-  if (index >= scene_.materials.size()) return glm::dvec3(0.0);  // a visible lamp: has been counted as a lamp
+  if (index >= scene_.materials.size()) return glm::dvec3(0.0);  // a visible lamp: already counted as a lamp
   const Material& material = scene_.materials[index];
   const glm::dvec3 emission(material.emission);
   const bool has_picture = material.emission_texture >= 0 && Strength(emission) > 0;
@@ -186,7 +187,7 @@ void PathTracer::AddIndirect(const LightPoint& point, std::uint64_t key, int pat
         reaches[k] = Towards(lamps_[k], at, Uniform(lamp_words[0]), Uniform(lamp_words[1]));
         total += strengths[k] = Strength(reaches[k].light);
       }
-      if (total > 0) {  // one lamp, with a probability as its share were nothing in between
+      if (total > 0) {  // one lamp, with probability proportional to its unoccluded irradiance
         std::size_t k = 0;
         for (double left = Uniform(lamp_words[2]) * total; k + 1 < lamps_.size() && left >= strengths[k]; ++k)
           left -= strengths[k];

@@ -21,22 +21,22 @@ struct LightPoint {
 };
 
 // All results are irradiance / pi: the radiance of a white Lambert surface. Lamps are the sun, points and rectangles;
-// light of lamps that flicker differently is kept apart, in layers (0: steady). Surfaces are Lambert, with textures
-// filtered over the width of a path; normal maps are not looked at. The estimates are unbiased, functions of their
-// arguments alone.
+// light of lamps with different flicker is kept in separate layers (0: steady). Surfaces are Lambertian, with textures
+// filtered over the width of a path and without normal maps. The estimates are unbiased, functions of their arguments
+// alone.
 class PathTracer {
  public:
-  // Keeps references to both; of the scene the materials, textures, lights and sky. Throws std::invalid_argument for
+  // Keeps references to both; uses the scene's materials, textures, lights and sky. Throws std::invalid_argument for
   // more than kMaxFlickers different flickers.
   PathTracer(const Scene& scene, const RayScene& rays);
 
   const std::vector<Flicker>& layers() const { return layers_; }
 
-  // Adds what comes from the sky, from surfaces that emit, and from all surfaces that are lit: everything but lamps.
-  // Over `paths` paths, a power of two. sums: by layer.
+  // Adds indirect light: from the sky, from emitting surfaces and from lit surfaces, but not directly from lamps. Mean
+  // over `paths` paths, a power of two. sums: by layer.
   void AddIndirect(const LightPoint& point, std::uint64_t key, int paths, std::span<glm::dvec3> sums) const;
 
-  // Adds what comes from lamps, straight; a rectangle at `samples` points, a power of two.
+  // Adds direct light of the lamps; a rectangle is sampled at `samples` points, a power of two.
   void AddDirect(const LightPoint& point, std::uint64_t key, int samples, std::span<glm::dvec3> sums) const;
 
   // Whether no surface is between two points (a little above their surfaces).

@@ -32,7 +32,7 @@ struct Resonators {
   T a1{0.0}, a2{0.0}, b1{0.0}, b2{0.0};
 };
 
-// Root mean square of the second difference over the step squared of what comes out, for white noise of variance 1.
+// Root mean square of the output's second difference over the step squared, for white noise of variance 1.
 double AccelerationRms(double w) {
   Resonators<double> resonators(w);
   double x1 = 0, x2 = 0, sum = 0;
@@ -45,8 +45,8 @@ double AccelerationRms(double w) {
   return std::sqrt(sum);
 }
 
-// Makes the components below 0.3 Hz no more than the share `most` of what the others leave of the rate, and returns
-// what is left for the course.
+// Limits the components below 0.3 Hz to the share `most` of the rate that the others leave, and returns the remainder
+// for the course.
 double Share(double rms, double effort, double most, std::array<double, kGaitComponents>& accelerations) {
   constexpr std::size_t kLow = 2;  // components
   const double all = rms * std::exp(0.5 * effort * effort);

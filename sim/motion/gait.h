@@ -1,4 +1,4 @@
-// Random motion of a carried camera, fitted to recordings: what hands and drones add to a course.
+// Random motion of a hand-held camera or drone, fitted to recordings, relative to a course.
 // Source: scenes/generate/fit_motion.py, which makes gait_table.inc; docs/motion.md.
 #pragma once
 
@@ -16,13 +16,13 @@ namespace sim {
 constexpr double kGaitStep_s = 0.01;
 constexpr std::size_t kGaitComponents = 13;
 
-// What was fitted. Accelerations are root mean squares of components, all three axes together.
+// Fitted parameters. Accelerations are root mean squares of components, all three axes together.
 struct GaitTable {
   double speed, turn_rate;  // medians of the recordings' means [m/s], [rad/s]
   // With the motion, of 1 m/s and 1 rad/s of mean speed and turn rate at vehemence 1; tremor [m/s^2], [rad/s^2].
   std::array<double, kGaitComponents> linear, linear_tremor, angular, angular_tremor;
   double burst, burst_s;     // standard deviation of the logarithm of the drive, and how long it lasts
-  double effort, effort_hz;  // the same of calm and busy times, of course and drive, and their corner
+  double effort, effort_hz;  // the same of calm and busy times, for course and drive, and its corner frequency
   double course_hz;          // corner of the course's rates
   double evenness;           // of the course's speed: 0 constant, large as of a normal vector
   double climb, ahead_s;     // to both sides of the start's height [m]; turns away from surfaces so long before
@@ -43,7 +43,7 @@ struct LowPass {
     first += w * kGaitStep_s * (x - first);
     rate += w * kGaitStep_s * (first - rate);
   }
-  // So that `rate` has variance 1 from normal numbers.
+  // A step with standard normal input, scaled so that `rate` has variance 1.
   void Draw(double corner_hz, const T& normal) {
     const double w = 2 * std::numbers::pi * corner_hz;
     Step(w, 2 / std::sqrt(w * kGaitStep_s) * normal);
@@ -66,7 +66,7 @@ class Gait {
   const GaitTable& table() const { return table_; }
   double speed() const { return speed_; }                // of all that moves, mean [m/s]
   double turn_rate() const { return turn_rate_; }        // [rad/s]
-  double course_speed() const { return course_speed_; }  // what is left to a course, root mean square
+  double course_speed() const { return course_speed_; }  // root mean square of the course's own speed
   double course_turn_rate() const { return course_turn_rate_; }
 
   // At k * kGaitStep_s, k = 0 ... count - 1; numbers keyed by (seed, k, component).

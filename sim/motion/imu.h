@@ -1,5 +1,5 @@
-// Inertial measurement unit (IMU) that is fixed to the camera: specific force and angular rate, white noise,
-// random-walk biases.
+// Inertial measurement unit (IMU) fixed to the camera: specific force and angular rate, white noise, random-walk
+// biases.
 // Source: f = R_IW (a_I - g); noise and bias as in Trawny and Roumeliotis 2005, "Indirect Kalman filter for 3D attitude
 //   estimation", and Kalibr's IMU noise model.
 #pragma once
@@ -14,7 +14,7 @@ namespace sim {
 
 enum class ImuReading {
   instant,  // the value at the stamp
-  mean      // what an integrating unit gives, over the reading's period with the stamp in its middle: see ImuAt
+  mean      // mean over the reading's period centred on the stamp, as of an integrating unit: see ImuAt
 };
 
 struct ImuParams {
@@ -57,7 +57,7 @@ ImuSample ImuAt(const Trajectory& trajectory, const ImuParams& params, double t_
 
 // The readings with first_ns <= stamp <= last_ns, at round(k / rate). Reading k has the noise density * sqrt(rate) * a
 // normal number keyed by (seed, k, axis); biases are 0 at k = 0 and gain walk / sqrt(rate) * another one with every
-// reading. So what is read at a stamp does not depend on the range.
+// reading. The reading at a stamp does not depend on the range.
 std::vector<ImuSample> ImuReadings(const Trajectory& trajectory, const ImuParams& params, std::uint64_t seed,
                                    std::int64_t first_ns, std::int64_t last_ns);
 

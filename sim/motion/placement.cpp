@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// The share of upward and level ways that end at a surface.
+// Fraction of upward and level rays that meet a surface.
 double Enclosed(const Surroundings& around, const glm::dvec3& p) {
   const double far = glm::distance(around.low(), around.high());
   int hits = 0;
@@ -28,7 +28,7 @@ double Enclosed(const Surroundings& around, const glm::dvec3& p) {
   return hits / 5.0;
 }
 
-// That takes an axis of the poses' frame, the nearest to their mean upward direction, to +y.
+// Rotation of that axis of the poses' frame that is nearest to their mean upward direction to +y.
 glm::dquat Upright(const std::vector<Pose>& poses) {
   glm::dvec3 up(0.0), axis(0.0);
   for (const Pose& pose : poses) up += pose.q_WC * glm::dvec3(0, -1, 0);

@@ -20,14 +20,14 @@ std::string FormatPlace(const glm::dvec3& p);  // "(1.2, 0.8, -3) m"
 // direction becomes +y. Throws std::invalid_argument when none is free.
 Pose FreePlaceOf(std::vector<Pose> poses, double clearance, const Surroundings& around, std::uint64_t seed);
 
-// Throws std::invalid_argument that names time, place and mesh of the first surface that the path over [0, end_s]
-// passes through: straight ways between instants 1/240 s apart are asked about, further apart in paths of more than an
-// hour. Not while `blind`: a camera whose lens is covered may be carried anywhere.
+// Throws std::invalid_argument naming time, place and mesh of the first surface that the path over [0, end_s] passes
+// through. Tested along chords between instants 1/240 s apart, or further apart in paths of more than an hour.
+// Instants at which `blind` holds (a covered lens) are exempt.
 void RequireFree(const Trajectory& path, double end_s, const Surroundings& around,
                  const std::function<bool(double t_s)>& blind = {});
 
-// From t_s on the camera is within 0.5 m and 30 degrees of where it was at earlier_s, having been more than 1 m or 60
-// degrees away in between; asked every 0.5 s.
+// Loop closure: from t_s on the camera is within 0.5 m and 30 degrees of its pose at earlier_s, having been more than
+// 1 m or 60 degrees away in between; tested every 0.5 s.
 struct Revisit {
   double t_s = 0, earlier_s = 0;
 };

@@ -12,7 +12,7 @@ struct Pose {
   glm::dquat q_WC{1.0, 0.0, 0.0, 0.0};  // unit
 };
 
-// From where and when a world is looked at. The time matters where objects move; a world without any needs none.
+// Viewpoint: pose and time. The time matters only where objects move.
 struct View {
   View(const Pose& from = {}, double at_s = 0.0) : pose(from), t_s(at_s) {}
   Pose pose;

@@ -21,7 +21,7 @@
 namespace sim {
 namespace {
 
-constexpr std::size_t kMostProblems = 20;  // enough to see what a file is
+constexpr std::size_t kMostProblems = 20;  // enough to identify the file's format
 
 void ThrowIfAny(std::vector<settings::Problem> problems, const std::filesystem::path& file) {
   if (problems.size() > kMostProblems) {
@@ -146,7 +146,7 @@ std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion,
   if (motion.placing == RecordedMotion::Placing::automatic) {
     if (around == nullptr) Fail(motion.file, "'placing: auto' needs a world of meshes");
     try {
-      std::vector<Pose> poses;  // as many as not to be divided by the 37 of FreePlaceOf
+      std::vector<Pose> poses;  // a number coprime to the 37 of FreePlaceOf
       for (int k = 0; k < 120; ++k) poses.push_back(trajectory->At(end_s * k / 119).pose);
       start = FreePlaceOf(std::move(poses), motion.clearance, *around, seed);
     } catch (const std::invalid_argument& error) {

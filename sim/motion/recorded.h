@@ -21,9 +21,9 @@ std::vector<KeyPose> ReadTumTrajectory(const std::filesystem::path& file);
 std::vector<KeyPose> Average(const std::vector<KeyPose>& keys, double average_s);
 
 // A spline (sim/motion/spline.h) through the averaged poses, moved in time and space as described; up to average_s at
-// the file's ends it goes on at constant velocity. What noise remains is real motion of the simulated camera. Throws
-// settings::Error as above, when it is to be placed automatically and there is no such place (placement.h) or no world,
-// and when the recording ends before end_s or turns too fast for a spline.
+// the file's ends it is extrapolated at constant velocity. Remaining noise of the recording is part of the true motion.
+// Throws settings::Error as above; when it is to be placed automatically and there is no such place (placement.h) or no
+// world; and when the recording ends before end_s or turns too fast for a spline.
 std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s, std::uint64_t seed = 1,
                                                    const Surroundings* around = nullptr);
 

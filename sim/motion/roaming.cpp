@@ -25,7 +25,7 @@ std::size_t KeysUntil(double end_s) { return static_cast<std::size_t>(std::ceil(
 double YawOf(const glm::dvec3& way) { return std::atan2(-way.x, -way.z); }
 double PitchOf(const glm::dvec3& way) { return std::atan2(way.y, std::hypot(way.x, way.z)); }
 double Wrapped(double angle) { return std::remainder(angle, 2 * std::numbers::pi); }
-// What lies beyond +-width.
+// Excess of x beyond +-width.
 double Beyond(double x, double width) { return x - std::clamp(x, -width, width); }
 
 glm::dquat Turned(const glm::dquat& start, const glm::dvec3& pitch_yaw_roll) {
@@ -49,7 +49,7 @@ class Roamer {
     target_ = {pitch_0_, yaw_0_};
   }
 
-  // Keys, and how far the nearest surface comes to the clearance (below 0: too near) and when.
+  // Keys, and the smallest excess of a surface's distance over the clearance (below 0: too near) with its time.
   struct Path {
     std::vector<KeyPose> keys;
     double spare = 1e9, spare_s = 0;
@@ -152,8 +152,8 @@ class Roamer {
   LowPass<glm::dvec3> moves_, turns_, away_, gaze_;  // the last two so that the acceleration stays bounded
 };
 
-// A car's: level, along its own axis, with a speed and a curvature of low-passed noise, slower and turning away where
-// the way ahead is short. Not fitted to anything.
+// Path of a car: level, along its own axis, with a speed and a curvature of low-passed noise, slower and turning away
+// where the way ahead is short. Not fitted to anything.
 std::vector<KeyPose> Drive(const RoamingMotion& m, const Pose& start, std::uint64_t seed, double end_s,
                            const Surroundings* around) {
   const double most = m.gait.speed.value_or(3), yaw_0 = YawOf(start.q_WC * glm::dvec3(0, 0, 1));

@@ -15,22 +15,22 @@ namespace sim {
 //   p = p_0 + course + offset        q = R_y(yaw) q_0 R_x(pitch) R_z(roll), each the course's plus the offset
 //
 // with the offsets of sim/motion/gait.h and a course whose rates are normal numbers through a low-pass of second order.
-// Its velocity u counts as speed * u sqrt((1 + e) / (e + |u|^2)), e the table's evenness, so that the whole has the
-// stated mean speed and turn rate. Near a surface the course's way inwards is damped and the camera is pushed outwards,
-// with a speed that grows with the cube of how far it is within a margin of 1.5 s (drones: 2 s) at its speed. The gaze
-// drifts about what, among 27 directions ahead and to the sides, has most to see (Surroundings::Interest) times a random
-// number, chosen anew every 2 s; or about `look_at`. Paths that come too near all the same are drawn again, 32 times at
-// most.
+// A course velocity u is scaled to speed * u sqrt((1 + e) / (e + |u|^2)), e the table's evenness, so that the whole
+// path has the stated mean speed and turn rate. Near a surface the course's inward velocity is damped and the camera is
+// pushed outwards, with a speed that grows with the cube of its depth within a margin of 1.5 s (drones: 2 s) at its
+// speed. The gaze varies about the direction, among 27 ahead and to the sides, of the largest Surroundings::Interest
+// times a random number, chosen anew every 2 s; or about `look_at`. Paths that still come too near are drawn again, at
+// most 32 times.
 //
 // A vehicle moves level and along its own axis, with a speed and a curvature of low-passed noise, slower and turning
 // away where the way ahead is short; it is not fitted to anything.
 //
-// Without surroundings (worlds of points, objects) the camera roams and looks freely. Throws std::invalid_argument that
-// says where and when the clearance cannot be kept, or that there is no place to start.
+// Without surroundings (worlds of points, objects) the camera roams and looks freely. Throws std::invalid_argument
+// naming place and time where the clearance cannot be kept, or when there is no free place to start.
 std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& motion, std::uint64_t seed, double end_s,
                                         const Surroundings* around);
 
-// The path with the offsets of a gait from 0.7 Hz on: p + offset, q R_y R_x R_z. Speeds that `shake` does not state are
+// The path with a gait's offsets from 0.7 Hz upwards: p + offset, q R_y R_x R_z. Speeds that `shake` leaves open are
 // the path's own means.
 std::unique_ptr<Trajectory> Shaken(const Trajectory& path, GaitParams shake, std::uint64_t seed, double end_s);
 

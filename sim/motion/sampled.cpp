@@ -20,8 +20,8 @@ glm::dvec3 Drawn(const glm::dvec3& mean, double sigma, std::uint64_t seed, std::
   return sigma > 0 ? mean + sigma * NormalVectors(seed, Stream::start_velocity, 0, which)[0] : mean;
 }
 
-// Of the walls: within the margin, critically damped towards its inner edge while the camera is beyond or goes
-// outwards.
+// Acceleration by the walls: within the margin, critically damped towards its inner edge while the camera is beyond it
+// or moves outwards.
 glm::dvec3 Push(const SoftWalls& walls, const glm::dvec3& p, const glm::dvec3& v) {
   glm::dvec3 a(0.0);
   for (int axis = 0; axis < 3; ++axis) {

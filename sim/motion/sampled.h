@@ -21,24 +21,22 @@ namespace sim {
 //
 // Without return (r = 0) positions and velocities at knots are an exact sample of the model, also over several knots;
 // orientation is so from knot to knot, in the tangent space at the earlier one, the velocity being the true angular
-// velocity. A filter whose frames lie further apart sees turns that do not commute summed as if they did: what that
-// adds to its increments is 0.8 per cent of their noise's standard deviation at 0.5 rad/s^1.5 over 10 s and grows with
-// the turn rate (sampled_test measures it). With knot_step = the time between frames there is nothing to add: the
-// frames are exactly the filter's model.
+// velocity. A filter with a longer step neglects that rotations do not commute: its increments have an additional error
+// of 0.8 per cent of their noise's standard deviation at 0.5 rad/s^1.5 over 10 s, growing with the turn rate
+// (sampled_test measures it). With knot_step = the time between frames the frames follow the filter's model exactly.
 //
-// With return the model is another: a pull towards the start, critically damped, held over one step; in the
-// long run the standard deviations are sigma / (2 r^1.5) of a position and sigma / (2 r^0.5) of a velocity per axis,
-// and for small angles of the orientation.
+// With return there is an additional pull towards the start, critically damped, held over one step; in the long run the
+// standard deviations are sigma / (2 r^1.5) of a position and sigma / (2 r^0.5) of a velocity per axis, and for small
+// angles of the orientation.
 //
 // Soft walls change the model within their margin only: beyond its inner edge by s, -rate^2 s is added to an axis's
 // acceleration, and -2 rate v while it moves outwards. A camera that arrives at speed v penetrates by v / (e rate); a
 // wall is soft, and large noise pushes through.
 //
-// Between knots the path is the cubic with the knots' values and derivatives: for the position that is its expectation
-// given the knots. What it lacks of the model there is at most sigma^2 h^3/192 of a position's and sigma^2 h/16 of a
-// velocity's variance. Velocities and accelerations are the exact derivatives of this path everywhere; accelerations
-// jump at knots, by some 3 sigma / sqrt(h), as the model's own has no limit there. Frames whose rate divides 1/h lie
-// on knots.
+// Between knots the path is the cubic Hermite interpolant, which for the position is its expectation given the knots.
+// Its variance is smaller than the model's there by at most sigma^2 h^3/192 (position) and sigma^2 h/16 (velocity).
+// Velocities and accelerations are the exact derivatives of this path everywhere; accelerations jump at knots, by some
+// 3 sigma / sqrt(h), as the model's own has no limit there. Frames whose rate divides 1/h lie on knots.
 class SampledTrajectory : public Trajectory {
  public:
   // Throws std::invalid_argument for sigmas, noises or returns that are negative, a step outside (0, 0.1] s, return *

@@ -34,8 +34,8 @@ inline glm::dvec3 RightJacobianTimes(const glm::dvec3& phi, const glm::dvec3& d)
   return d - b * cross + c * glm::cross(phi, cross);
 }
 
-// The derivative of J_r(phi(t)) d by t while d stands still, for phi' = rate. With J_r d = d - b phi x d + c phi x (phi
-// x d) and b' = (phi . rate) times what is called db here.
+// The derivative of J_r(phi(t)) d by t at constant d, for phi' = rate. With J_r d = d - b phi x d + c phi x (phi x d)
+// and b' = (phi . rate) db, c' = (phi . rate) dc.
 inline glm::dvec3 RightJacobianRateTimes(const glm::dvec3& phi, const glm::dvec3& rate, const glm::dvec3& d) {
   const double a2 = glm::dot(phi, phi), a = std::sqrt(a2);
   double b = 0.5, c = 1.0 / 6, db = 0, dc = 0;

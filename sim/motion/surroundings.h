@@ -1,4 +1,4 @@
-// What a path must know of a world: its nearest surface, the first one on a way, and whether there is something to see.
+// Surroundings of a path: nearest surface, first surface between two points, and visual interest of a view.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -9,7 +9,7 @@
 
 namespace sim {
 
-// Of what stands still; objects that move are not asked about. Concurrent calls are allowed.
+// Static surfaces only, without moving objects. Concurrent calls are allowed.
 class Surroundings {
  public:
   virtual ~Surroundings() = default;

@@ -32,12 +32,12 @@ class Trajectory {
 
 // A trajectory for stamps from 0 to last_stamp_s, each with `margin_s` around it. Within the margin of the first and
 // last stamp a scripted or recorded motion may be extrapolated at constant velocity; a sampled one before the first
-// only, so that a longer scenario begins with the same frames. `around` is asked by motions that keep clear of surfaces
+// only, so that a longer scenario begins with the same frames. `around`: surfaces for motions that keep a clearance
 // (sim/motion/roaming.h) or are placed in a world; null: there are none. Throws std::invalid_argument and
 // settings::Error, as the constructors of the trajectories do.
 std::unique_ptr<Trajectory> MakeTrajectory(const MotionDescription& motion, std::uint64_t seed, double last_stamp_s,
                                            double margin_s, const Surroundings* around = nullptr);
-// Whether it asks.
+// Whether MakeTrajectory needs `around`.
 bool NeedsSurroundings(const MotionDescription& motion);
 
 // Of a frame C that is fixed to a moving body, such as a camera of a rig: X_B = R(q) X_C + p.
@@ -53,7 +53,7 @@ struct Truth {
   glm::dvec3 alpha_WC_C{0.0};           // in C [rad/s^2]
 };
 
-// Throws std::logic_error when the motion is not finite or not a rotation: our bug.
+// Throws std::logic_error when the motion is not finite or not a rotation (a programming error).
 Truth TruthAt(const Trajectory& trajectory, double t_s);
 
 }  // namespace sim

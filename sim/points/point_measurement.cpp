@@ -22,7 +22,7 @@ glm::dvec2 Elsewhere(const PointMeasurement& m, const CameraParams& camera, cons
 
 double BlurLoss(const PointMeasurement& m, double moved_px) {
   if (m.blur_length_px == 0) return 0;
-  // 1 / (1 + x^-4), which stays a number for whatever moves very fast.
+  // 1 / (1 + x^-4), which is finite for any speed.
   const double inverse = m.blur_length_px / moved_px;
   return 1 / (1 + inverse * inverse * inverse * inverse);
 }

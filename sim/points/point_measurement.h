@@ -14,7 +14,7 @@ namespace sim {
 // blur_length_px is 0.
 double BlurLoss(const PointMeasurement& measurement, double moved_px);
 
-// Which view it is: numbers of different views are independent.
+// Key of a view: random numbers of different views are independent.
 struct ViewKey {
   std::uint64_t key = 0;
   std::uint32_t frame = 0;
@@ -24,7 +24,7 @@ struct ViewKey {
 // `pixel`: where the landmark's image is. Nothing when the view is missing.
 std::optional<glm::dvec2> Measure(const PointMeasurement& measurement, const CameraParams& camera, const ViewKey& view,
                                   const glm::dvec2& pixel, double moved_px);
-// The same for a landmark's first view, which has noise only.
+// First view of a landmark, with noise only.
 glm::dvec2 MeasureFirst(const PointMeasurement& measurement, const ViewKey& view, const glm::dvec2& pixel);
 
 }  // namespace sim

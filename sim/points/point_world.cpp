@@ -13,7 +13,7 @@
 namespace sim {
 namespace {
 
-// A filter may have the same seed and the same generator: with another key the two share no number.
+// Key of this world's random numbers, distinct from those of a filter with the same seed and generator.
 constexpr std::uint64_t kKey = 0x706f696e745f776full;
 
 const PointDescription& PointsOf(const Scenario& scenario) {
@@ -89,7 +89,7 @@ std::optional<PointWorld::View> PointWorld::See(const Eye& eye, const glm::dvec4
   if (!(X_C.z > 0) || X_C.z < world_.min_depth_m * X_W.w) return std::nullopt;
   const View view{camera_.Project(X_C), X_C};
   if (!InImage(camera_.params(), view.pixel)) return std::nullopt;
-  // Far outside the image a lens need not be one-to-one: what it folds back into the image is not in view.
+  // Far outside the image a lens need not be one-to-one: points folded back into the image are not in view.
   const glm::dvec2 ray(X_C.x / X_C.z, X_C.y / X_C.z);
   if (glm::distance(camera_.Undistort(view.pixel), ray) > 1e-6 * (1 + glm::length(ray))) return std::nullopt;
   return view;

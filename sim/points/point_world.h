@@ -29,11 +29,11 @@ struct PointObservation {
 struct PointFrame {
   std::int64_t index = 0;
   std::int64_t stamp_ns = 0;
-  Truth truth;                                 // for the judge
+  Truth truth;                                 // ground truth, for evaluation
   std::vector<PointObservation> observations;  // by increasing id
 };
 
-// A landmark's id counts first views; one that was forgotten and is seen again has a new id.
+// A landmark. Ids count first views; a landmark that is dropped and seen again has a new id.
 struct PointLandmark {
   std::int64_t id = 0;
   // (x, y, z, w) in W: the point (x, y, z) / w. w = 1 but where landmarks are drawn from a prior: there w is the
@@ -53,7 +53,7 @@ class PointWorld {
   std::int64_t frame_count() const { return frames_; }
   const Camera& camera() const { return camera_; }
   const Scenario& scenario() const { return scenario_; }
-  // What is possible but probably not meant.
+  // Settings that are possible but probably not meant.
   std::vector<std::string> Warnings() const;
 
   // Functions of the scenario, its seed and the index in [0, frame_count); std::out_of_range otherwise.
@@ -65,7 +65,7 @@ class PointWorld {
 
   // Every landmark seen so far, landmarks()[id].
   const std::vector<PointLandmark>& landmarks() const { return landmarks_; }
-  // Where a frame's camera sees the landmark, without noise; nothing when it is out of view.
+  // Image of the landmark in a frame's camera, without noise; nothing when it is out of view.
   std::optional<glm::dvec2> Project(const PointLandmark& landmark, std::int64_t frame) const;
 
  private:

@@ -13,7 +13,7 @@
 
 namespace sim {
 
-// What a number is for. Numbers of different streams are independent.
+// Purposes of random numbers. Numbers of different streams are independent.
 enum class Stream : std::uint32_t {
   position_noise = 1,
   orientation_noise = 2,
@@ -52,7 +52,7 @@ inline Words RandomWords(std::uint64_t seed, Stream stream, std::uint32_t frame,
   return {words[0], words[1], words[2], words[3]};
 }
 
-// A seed for what is drawn apart.
+// A seed for a separate sequence of numbers.
 inline std::uint64_t SeedOf(const Words& words) { return (std::uint64_t{words[0]} << 32) | words[1]; }
 
 // In (0, 1), never 0 or 1, with 32 bits.

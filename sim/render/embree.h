@@ -12,8 +12,8 @@
 
 namespace sim {
 
-// Intersect: the nearest hit; Occluded: any. Scenes of objects (instances) are asked without the coherent flag: with
-// it, rtcOccluded16 of Embree 3.13.5 does not return where no instance has motion blur.
+// Intersect: the nearest hit; Occluded: any. Queries of scenes with instances do not set the coherent flag: with it,
+// rtcOccluded16 of Embree 3.13.5 does not return where no instance has motion blur.
 #if RTC_VERSION_MAJOR >= 4
 static inline void Intersect16(const int* valid, RTCScene scene, RTCRayHit16* rays, bool coherent) {
   RTCIntersectArguments arguments;

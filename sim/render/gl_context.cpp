@@ -15,7 +15,7 @@
 namespace sim {
 namespace {
 
-// A shared library that is never closed: the threads that it may have started would not survive that.
+// Shared library that is never closed, since threads that it has started may still run.
 class Library {
  public:
   explicit Library(std::initializer_list<const char*> names) {
@@ -65,7 +65,7 @@ class EglContext final : public GlContext {
  private:
   std::string ErrorCode() const { return std::to_string(VOBENCH_GET(eglGetError)()); }
 
-  // GPUs first: the vendors' libraries list their devices in an order of their own, Mesa its software last.
+  // GPUs first: the vendors' libraries list their devices in their own order, Mesa its software last.
   std::vector<EGLDisplay> Displays() const {
     std::vector<EGLDisplay> displays;
     const auto get = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(find_("eglGetPlatformDisplayEXT"));
@@ -87,7 +87,7 @@ class EglContext final : public GlContext {
     return displays;
   }
 
-  // A display is the process's: it is never terminated, since somebody else may be using it.
+  // A display is the process's: it is never terminated, since other code may use it.
   bool Open(EGLDisplay display, std::vector<std::string>& reasons) {
     if (display == EGL_NO_DISPLAY || VOBENCH_GET(eglInitialize)(display, nullptr, nullptr) != EGL_TRUE) {
       reasons.push_back("a display does not start");
@@ -155,7 +155,7 @@ class MesaContext final : public GlContext {
   decltype(OSMesaGetProcAddress)* find_;
   decltype(OSMesaMakeCurrent)* make_current_;
   OSMesaContext context_ = nullptr;
-  std::array<unsigned char, 4> pixel_{};  // the window that OSMesa insists on; nothing is drawn into it
+  std::array<unsigned char, 4> pixel_{};  // OSMesa requires a window; nothing is drawn into it
 };
 
 #undef VOBENCH_GET

@@ -34,7 +34,7 @@ struct GlApi {
   VOBENCH_GL_FUNCTIONS(VOBENCH_GL_MEMBER)
 #undef VOBENCH_GL_MEMBER
 
-  // Fills the table; returns the names of what is not there. `find`: (const char* name) -> pointer to the function.
+  // Fills the table; returns the names of missing functions. `find`: (const char* name) -> pointer to the function.
   template <class Find>
   std::vector<std::string> Load(const Find& find) {
     std::vector<std::string> missing;
@@ -51,7 +51,7 @@ struct GlApi {
 
 enum class GlPlatform;  // sim/render/rasteriser.h
 
-// libEGL and libOSMesa are opened when they are asked for: a machine without either builds and runs all the rest.
+// libEGL and libOSMesa are loaded at run time, on demand: neither is needed to build or to run the rest.
 class GlContext {
  public:
   virtual ~GlContext() = default;
@@ -83,7 +83,7 @@ class GlContext {
   std::mutex mutex_;
 };
 
-// OpenGL 4.5 core. Throws std::runtime_error that says, for each platform that was tried, why it does not serve.
+// OpenGL 4.5 core. Throws std::runtime_error with the reason of failure for each platform that was tried.
 std::unique_ptr<GlContext> MakeGlContext(GlPlatform platform);
 
 }  // namespace sim

@@ -6,7 +6,7 @@
 namespace sim {
 namespace {
 
-// Throws what the compiler or the linker says about `id` unless its `status` is good.
+// Throws with the log of the compiler or linker for `id` unless its `status` is good.
 template <class Get, class GetLog>
 void CheckBuilt(GLuint id, GLenum status, const Get& get, const GetLog& get_log, const std::string& what) {
   GLint good = 0, length = 0;

@@ -1,5 +1,5 @@
-// OpenGL objects with owners: buffers, textures, framebuffers, programs. Private to sim/render. The context must be
-// current for all of it, destructors included. Only Program throws by itself: CheckGl asks for the errors of OpenGL.
+// RAII wrappers of OpenGL objects: buffers, textures, framebuffers, programs. Private to sim/render. The context must
+// be current for all of it, destructors included. Only Program throws by itself: CheckGl checks for OpenGL errors.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace sim {
 
-// Throws std::runtime_error naming `what` when OpenGL has met an error since it was last asked.
+// Throws std::runtime_error naming `what` on an OpenGL error since the last check.
 void CheckGl(const GlApi& gl, const std::string& what);
 
 class GlObject {
@@ -56,11 +56,12 @@ GlObject MakeBuffer(const GlApi& gl, const std::vector<T>& data) {
 // One level, nearest texel, nothing beyond its border.
 GlObject MakeTexture(const GlApi& gl, GLenum format, int width, int height);
 
-// A long row of texels that a shader reads by number.
+// Buffer texture: a one-dimensional array of texels, fetched by index.
 struct BufferTexture {
   GlObject buffer, texture;
   BufferTexture() = default;
-  // Each of `data` is `texels_each` texels. Of more than the context can read std::invalid_argument names `what`.
+  // Each of `data` is `texels_each` texels. Throws std::invalid_argument naming `what` for more than the context's
+  // limit.
   template <class T>
   BufferTexture(const GlApi& gl, GLenum format, const std::vector<T>& data, const std::string& what,
                 std::size_t texels_each = 1)
@@ -74,11 +75,11 @@ struct BufferTexture {
 GlObject MakeVertexArray(const GlApi& gl);
 GlObject MakeFramebuffer(const GlApi& gl);
 
-// A vertex and a fragment shader. Set() does so for the program in use, which Use() makes it.
+// A vertex and a fragment shader. Set() acts on the program in use, which Use() selects.
 class Program {
  public:
   Program() = default;
-  // Throws std::runtime_error with the compiler's words.
+  // Throws std::runtime_error with the compiler's messages.
   Program(const GlApi& gl, const std::string& name, const std::string& vertex, const std::string& fragment);
 
   void Use() const;

@@ -1,9 +1,9 @@
 // Packet kernel, the inner loop of the ray tracer: its data in plain arrays, sixteen rays at a time. Private to
 // sim/render.
 //
-// The loop (packet.inc) is compiled several times, for several instruction sets, and PacketKernels() says which this
-// machine has. Those files must therefore not use inline functions of other headers: the linker keeps only one
-// copy of such a function, perhaps the one that this machine cannot run.
+// The loop (packet.inc) is compiled several times, for several instruction sets; PacketKernels() lists those of this
+// machine. Those files must therefore not use inline functions of other headers: the linker keeps only one copy of such
+// a function, perhaps one with instructions that this machine lacks.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct OverTriangle {
   float first[kSize], du[kSize], dv[kSize];
 };
 
-// What is looked up at a hit, in half a cache line.
+// Shading data of a triangle, half a cache line.
 struct alignas(32) TriangleShading {
   OverTriangle<2> uv;  // texture coordinates
   // Low 24 bits: the material; then 4 bits each: log2 of the baked light's resolution on the front and on the back
@@ -52,14 +52,14 @@ struct MaterialShading {
   PictureShading color, emission_picture, normal_map;  // where there is none: a white texel, a flat normal
   float normal_scale;
 };
-// How a material mirrors, by glTF's model: a metal's base colour is that of its reflection, other surfaces reflect 4 %.
+// Specular reflection of a material by glTF's model: a metal reflects its base colour, other surfaces reflect 4 %.
 struct GlossShading {
   float metallic, roughness;  // times the picture's blue and green
   PictureShading picture;
   std::int32_t mirrors;  // -1, or 0: Lambert alone
 };
-// A rectangle that shines towards its normal, as it is seen in what mirrors. A point of its plane is corner + a u + b v
-// with a = dual_u . (point - corner), b likewise.
+// A one-sided rectangular lamp, as seen in reflections. A point of its plane is corner + a u + b v with
+// a = dual_u . (point - corner), b likewise.
 struct LampShading {
   float corner[3], normal[3], dual_u[3], dual_v[3], radiance[3];
   std::int32_t layer;  // of RaySample::layer_factors
@@ -69,7 +69,7 @@ struct LevelShading {
   const std::uint32_t* texels;  // sim/world/texture.h's coding; rows are width + 1 long
 };
 
-// What a ray meets that meets nothing. With a picture: of all directions, sim/world/sky.h.
+// Radiance of rays that meet no surface. With a picture: of all directions, sim/world/sky.h.
 struct SkyShading {
   float zenith[3], horizon[3], ground[3];  // blended by the direction's y
   const float* picture;                    // null, or rgb; rows are width + 1 long, the first pixel again at the end
@@ -97,7 +97,7 @@ struct PacketScene {
   SkyShading sky;
 };
 
-// Objects that move, as all rays of an exposure see them. Embree's time runs from 0 to 1 over the exposure of all rows.
+// Moving objects during an exposure. Embree's time runs from 0 to 1 over the exposure of all rows.
 struct PacketObjects {
   RTCScene embree;                      // an instance for each object, numbered as Scene::objects
   const std::int32_t* first_triangles;  // by 2 * object + Embree's geometry in it
@@ -108,7 +108,7 @@ struct PacketObjects {
 
 constexpr int kMaxLightLayers = 8;
 
-// One light as one time sample sees it. Irradiance at distance vector l, of length r, on a surface with normal n:
+// One light at one time sample. Irradiance at distance vector l, of length r, on a surface with normal n:
 //   directional:         power * max(0, n . (x, y, z))
 //   from point (x, y, z): power * max(0, n . l / r) / r^2, times max(0, -normal . l / r) when one_sided
 struct LightSample {

@@ -8,13 +8,13 @@ namespace sim {
 namespace {
 
 constexpr double kPathError = 1e-6;  // [m]
-constexpr int kFewestParts = 4;      // where there is an interval: one middle alone may agree by chance
+constexpr int kFewestParts = 4;      // where there is an interval: a single midpoint may agree by chance
 constexpr int kMostParts = 128;
 static_assert(kMostParts + 1 <= RTC_MAX_TIME_STEP_COUNT);
 
 glm::dvec3 Apply(const Pose& pose, const glm::dvec3& X_O) { return pose.q_WC * X_O + pose.p_WC; }
 
-// How far the straight way from one pose to another leaves the pose in between, at the corners of the object's box.
+// Largest deviation of the linearly interpolated pose from the pose in between, at the corners of the object's box.
 double Departure(const RayObject& object, const Pose& from, const Pose& middle, const Pose& to) {
   double worst = 0;
   for (int corner = 0; corner < 8; ++corner) {

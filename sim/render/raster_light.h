@@ -20,20 +20,20 @@ struct RasterLight {
   glm::vec4 map[3];  // of a sun: (map . (X_W, 1)) is the place in its shadow map, and how near it is; all in 0 ... 1
 };
 
-// All but the ambient ones, as a sample of an exposure sees them. point: of rectangles, in parts of their sides.
+// All lights but the ambient ones, at a time sample of an exposure. point: of rectangles, in parts of their sides.
 std::vector<RasterLight> LightsOfSample(const std::vector<Light>& lights, const glm::dvec2& point,
                                         const RasterScene& scene);
 
-// What is lit, by distance: for a point the six faces of a cube, for a sun one picture of the whole scene. Those of
-// suns and points are drawn once, those of rectangles once for each number of samples, since worlds stand still.
+// Depth of the lit surfaces: for a point light the six faces of a cube, for a sun one picture of the whole scene. Maps
+// of suns and points are drawn once, those of rectangles once for each number of samples, since the world is static.
 class ShadowMaps {
  public:
   // side: [texel] of each map; halved as often as it takes for all rectangles' to fit into one GiB.
   ShadowMaps(const GlApi& gl, int side) : gl_(gl), side_(side) {}
 
-  // Draws what is not there. lights: of sample 0 ... n - 1. For worlds that stand still.
+  // Draws the maps not drawn yet. lights: of sample 0 ... n - 1. For static worlds.
   void Draw(const RasterScene& scene, const Program& triangles, const std::vector<std::vector<RasterLight>>& lights);
-  // Draws all of one sample, of a world as it is then; replaces what was there; its rectangles' maps are of_sample(0).
+  // Draws all maps of one sample of a moving world, replacing the earlier ones; its rectangles' maps are of_sample(0).
   void DrawSample(const RasterScene& scene, const Program& triangles, const std::vector<RasterLight>& lights);
 
   GLuint lasting() const { return lasting_.id(); }  // of suns and points

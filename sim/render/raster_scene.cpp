@@ -78,7 +78,7 @@ void RasterScene::AppendTextures(const Scene& scene) {
     const auto texture = static_cast<std::size_t>(m.texture);
     const bool has_texture = m.texture >= 0;
     materials.emplace_back(m.base_color, Bits(has_texture ? first_level[texture] : 0));
-    // Of a picture that shines the mean, which is the last level.
+    // Of an emissive picture the mean, which is the last level.
     glm::vec3 emission = m.emission;
     if (m.emission_texture >= 0) {
       const Texture& picture = scene.textures[static_cast<std::size_t>(m.emission_texture)];

@@ -34,7 +34,7 @@ class RasterScene {
             const glm::mat4& clip) const;
 
   bool moves() const { return !objects_.empty(); }
-  // Puts the objects where they are at a time; before that they are nowhere.
+  // Places the objects at a time; until the first call they are not drawn.
   void Move(double t_s);
 
   GLuint triangles() const { return triangles_.texture.id(); }
@@ -43,12 +43,12 @@ class RasterScene {
   GLuint texels() const { return texels_.texture.id(); }
   int texels_per_triangle() const { return texels_per_triangle_; }
 
-  // A box around it, in W, with the objects where they are; a point where there is nothing.
+  // Bounding box in W, with the objects in place; a point where the scene is empty.
   const glm::vec3& low() const { return low_; }
   const glm::vec3& high() const { return high_; }
 
  private:
-  // What of the buffers is an object's, and its part of the table with all vectors in O.
+  // An object's part of the buffers, and its part of the table with all vectors in O.
   struct Part {
     std::shared_ptr<const Trajectory> motion;
     std::size_t first_position = 0, end_position = 0, first_triangle = 0;

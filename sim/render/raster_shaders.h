@@ -1,8 +1,8 @@
 // Shaders of the rasteriser (GLSL 4.50). Private to sim/render.
 //
-// A frame is made in two steps. First the triangles are drawn into a view, a pinhole picture that says which triangle
-// is seen where. Then each pixel of the picture takes its exact ray, looks up in the view which triangle that meets,
-// meets the triangle's plane with the ray, and computes the light there, in the ray tracer's terms.
+// A frame takes two steps. First the triangles are drawn into a view, a pinhole picture of triangle numbers. Then, for
+// each pixel, its exact ray is intersected with the plane of the triangle that the view has there, and shaded by the
+// ray tracer's model.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace sim {
 
 inline const std::string kGlslVersion = "#version 450 core\n";
 
-// Triangles as a camera or a light sees them. clip_from_world: of positions less `origin`.
+// Triangles in a view of a camera or a light. clip_from_world: of positions less `origin`.
 inline const std::string kTriangleVertex = kGlslVersion + R"(
 layout(location = 0) in vec3 position;
 uniform vec3 origin;

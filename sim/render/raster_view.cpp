@@ -13,7 +13,7 @@
 namespace sim {
 namespace {
 
-constexpr float kWidestTangent = 1.2f;  // of a single view: beyond, its border has ever more texels for a pixel
+constexpr float kWidestTangent = 1.2f;  // of a single view: beyond, its border has ever more texels per pixel
 
 bool IsPinhole(const CameraParams& c) {
   return c.lens == Lens::radial_tangential && c.k1 == 0 && c.k2 == 0 && c.p1 == 0 && c.p2 == 0 && c.k3 == 0;
@@ -24,7 +24,7 @@ glm::vec2 Tangents(const glm::vec3& ray, int face) {
   return {v.x / v.z, v.y / v.z};
 }
 
-// What of a face some rays see.
+// Part of a face that some rays meet.
 struct Box {
   glm::vec2 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
   glm::ivec2 first{1 << 30}, last{-1};  // corners of pixels
@@ -63,7 +63,7 @@ class Corners {
     return sides;
   }
 
-  // What some rows of pixels see of each face, and of what is within `reach` tangents of it.
+  // Parts of each face met by some rows of pixels, enlarged by `reach` tangents.
   std::array<Box, kFaceCount> Boxes(int begin, int end, float reach) const {
     std::array<Box, kFaceCount> boxes;
     for (int j = begin; j <= end; ++j) {
@@ -128,7 +128,7 @@ RasterViews MakeRasterViews(const Camera& camera, int strip_rows, double margin,
   const Corners corners(out, width, height);
   const glm::vec2 pixel = out.exact ? glm::vec2(0.0f) : corners.PixelSides();
   const float texel = 0.5f * pixel.x;
-  // How far from its corners a pixel's rays may be: what it sees of a face that no corner is in is drawn too.
+  // Distance of a pixel's rays from its corners: the part of a face without a corner is drawn too.
   const float reach = 2 * pixel.y + (out.one_face ? 0.0f : static_cast<float>(margin));
   for (int begin = 0; begin < height; begin += strip_rows) {
     RasterStrip strip;

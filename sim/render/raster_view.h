@@ -48,10 +48,10 @@ struct RasterViews {
   std::vector<glm::vec4> corners;  // rays in C of the pixels' corners, (camera width + 1) a row; w: nothing
 };
 
-// A pinhole's view is its picture. Any other lens has one view a strip where it looks at most 50 degrees aside, else
-// one for each face of the cube that it sees; their texels are at most half as wide as the narrowest pixel, so that an
-// edge is off by a quarter of a pixel at most, and what lies between edges not at all. margin: by how much, in
-// tangents, rays may leave the lens's own because of the aperture; looked at by the faces of a cube only. Throws
+// A pinhole's view is its picture. Any other lens has one view a strip where its rays are within 50 degrees of the
+// axis, else one for each visible face of the cube; their texels are at most half as wide as the narrowest pixel, so
+// that an edge is off by a quarter of a pixel at most, and surfaces between edges not at all. margin: by how much, in
+// tangents, rays may leave the lens's own because of the aperture; used for faces of a cube only. Throws
 // std::invalid_argument when a view would need more than `longest_side` texels a side or 2^26 in all.
 RasterViews MakeRasterViews(const Camera& camera, int strip_rows, double margin, int longest_side);
 

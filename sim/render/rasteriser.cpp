@@ -36,7 +36,7 @@ void Check(const RasteriserOptions& o) {
   if (!problems.empty()) throw std::invalid_argument("rasteriser: " + base::Join(problems, "; "));
 }
 
-// What of the scene is not rendered, a sentence for each kind.
+// Elements of the scene that are not rendered, a sentence for each kind.
 std::vector<std::string> UnsupportedFeatures(const Scene& scene) {
   WarningList materials;
   const auto is_ambient = [](const Light& light) { return std::holds_alternative<AmbientLight>(light); };
@@ -60,14 +60,14 @@ std::vector<std::string> UnsupportedFeatures(const Scene& scene) {
   return features;
 }
 
-// Moved so that their mean is the middle, and the picture stays where it is.
+// Moves points to a mean in the middle, so that the picture is not shifted.
 void Centre(std::vector<glm::dvec2>& points) {
   glm::dvec2 mean(0.0);
   for (const glm::dvec2& point : points) mean += point / static_cast<double>(points.size());
   for (glm::dvec2& point : points) point -= mean;
 }
 
-// Where in the pixel sample i of n goes, from its middle [px]: the ray tracer's pattern, centred.
+// Point in the pixel of sample i of n, from its middle [px]: the ray tracer's pattern, centred.
 std::vector<glm::vec2> Jitter(int count, bool jitter) {
   std::vector<glm::dvec2> points(static_cast<std::size_t>(count), glm::dvec2(0.0));
   for (std::uint32_t i = 0; jitter && i < points.size(); ++i)
@@ -76,15 +76,15 @@ std::vector<glm::vec2> Jitter(int count, bool jitter) {
   return {points.begin(), points.end()};
 }
 
-// Where on the lens, in its radii, sample i of n goes through: the ray tracer's points, which it turns from pixel to
-// pixel, centred.
+// Point on the lens, in its radii, of sample i of n: the ray tracer's points, which it turns from pixel to pixel,
+// centred.
 std::vector<glm::dvec2> LensPoints(int count) {
   std::vector<glm::dvec2> points = DiscPoints(count);
   Centre(points);
   return points;
 }
 
-// Everything that lives in the context, and all that is done with it: only while it is current.
+// All OpenGL objects of the rasteriser and the operations on them: only while the context is current.
 class Drawing {
  public:
   Drawing(const GlApi& gl, const Scene& scene, const RasteriserOptions& options)
@@ -296,7 +296,7 @@ class Rasteriser final : public Renderer {
     try {
       const GlContext::Current current(*context_);
       drawing_.reset();
-    } catch (...) {  // the context's end frees what is in it
+    } catch (...) {  // freed with the context
       static_cast<void>(drawing_.release());
     }
   }

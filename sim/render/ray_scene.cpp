@@ -13,8 +13,8 @@
 namespace sim {
 namespace {
 
-// Asked for each hit of the second geometry by a ray: leaves valid[i] as it is where there is a surface, else sets it
-// to 0.
+// Embree's filter for each hit of the second geometry: leaves valid[i] unchanged where the surface is opaque, else sets
+// it to 0.
 void FilterHits(const RTCFilterFunctionNArguments* arguments, bool shadow) {
   const auto* filters = static_cast<const RayScene::Filter*>(arguments->geometryUserPtr);
   const unsigned n = arguments->N;
@@ -92,7 +92,7 @@ RayScene::RayScene(const Scene& scene) {
   AppendLamps(scene);
   still_triangles_ = static_cast<std::uint32_t>(triangles_.size());
   AppendObjects(scene);
-  if (triangles_.empty()) {  // rays still look up triangle 0 in lanes that met nothing
+  if (triangles_.empty()) {  // lanes without a hit still look up triangle 0
     shading_.emplace_back();
     if (any_normals_) normals_.emplace_back();
     if (any_colors_) colors_.emplace_back();
@@ -158,7 +158,7 @@ void RayScene::SetLight(const BakedLight& light) {
   if (light.samples.size() != count * light.layers.size()) throw std::invalid_argument("baked light: of another scene");
   lamps_are_baked_ = light.has_lamps;
   light_ = light.samples;
-  light_.resize(light_.size() + 16);  // lanes of weight 0 may look past the end
+  light_.resize(light_.size() + 16);  // lanes of weight 0 may read past the end
   packet_scene_.light = light_.data();
   packet_scene_.light_layers = static_cast<std::int32_t>(light.layers.size());
   packet_scene_.light_stride = static_cast<std::int32_t>(count);
@@ -209,7 +209,7 @@ void RayScene::Attach(RTCScene to, std::size_t begin, std::size_t end, bool filt
     std::transform(triangles.begin(), triangles.end(), static_cast<glm::uvec3*>(indices),
                    [low](const glm::uvec3& t) { return t - low; });
     if (filtered) {
-      rtcSetGeometryUserData(geometry, const_cast<Filter*>(filters_.data() + first_filter));  // Embree only hands it on
+      rtcSetGeometryUserData(geometry, const_cast<Filter*>(filters_.data() + first_filter));  // Embree passes it on
       rtcSetGeometryIntersectFilterFunction(geometry, FilterIntersect);
       rtcSetGeometryOccludedFilterFunction(geometry, FilterOccluded);
     }
@@ -221,7 +221,7 @@ void RayScene::Attach(RTCScene to, std::size_t begin, std::size_t end, bool filt
 
 EmbreeScene NewTree(RTCDevice device) {
   EmbreeScene tree(rtcNewScene(device));
-  rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips through between two triangles
+  rtcSetSceneFlags(tree.get(), RTC_SCENE_FLAG_ROBUST);  // watertight at edges between triangles
   return tree;
 }
 

@@ -32,7 +32,8 @@ OverTriangle<kSize> Over(const std::vector<glm::vec<kSize, float>>& values, cons
   Store(over.dv, values[t.z] - values[t.x]);
   return over;
 }
-// The same of texture coordinates, near 0, where floats are finest: pictures repeat. And of colours; white without any.
+// The same for texture coordinates, shifted near 0, where floats are finest (textures repeat); and for colours, white
+// without any.
 OverTriangle<2> UvsOver(const Mesh& mesh, const glm::uvec3& t);
 OverTriangle<3> ColorsOver(const Mesh& mesh, const glm::uvec3& t);
 template <int kSize>
@@ -64,10 +65,9 @@ struct RayObject {
   Pose PoseAt(double t_s) const { return motion->At(t_s).pose; }
 };
 
-// Triangles are numbered through all meshes, in two Embree geometries: first those that are there everywhere, then
-// those that Embree has to ask about at each hit (cut-outs, visible lamps). Triangle() turns a hit into the index into
-// every table. Those of objects, two geometries in each one's own tree, come after all that stands still; baked light
-// is not theirs.
+// Triangles are numbered through all meshes, in two Embree geometries: first the opaque ones, then those with a filter
+// that Embree calls at each hit (cut-outs, visible lamps). Triangle() maps a hit to the index into every table. Those
+// of objects, two geometries in each one's own tree, come after all static ones and have no baked light.
 class RayScene {
  public:
   // Throws std::invalid_argument for a scene with an index out of range, std::runtime_error when Embree fails.
@@ -76,10 +76,10 @@ class RayScene {
   RayScene(const RayScene&) = delete;
   RayScene& operator=(const RayScene&) = delete;
 
-  // From now on hits have this light instead of ambient light. Throws std::invalid_argument when it is another scene's.
+  // Replaces ambient light by this light. Throws std::invalid_argument when it is another scene's.
   void SetLight(const BakedLight& light);
   bool lamps_are_baked() const { return lamps_are_baked_; }
-  // From now on metal and gloss mirror (Material::Mirrors).
+  // Enables specular reflection of metal and gloss (Material::Mirrors).
   void AddReflections(const Scene& scene);
 
   const PacketScene& packet_scene() const { return packet_scene_; }
@@ -101,8 +101,8 @@ class RayScene {
   // Index in Scene::meshes of the mesh that a triangle is of; visible lamps count on behind the meshes, objects' meshes
   // behind those.
   std::uint32_t MeshOf(std::uint32_t triangle) const;
-  // What a triangle's shading tables say, interpolated at (u, v); the normal is not normalised and not oriented towards
-  // the viewer.
+  // The triangle's shading tables interpolated at (u, v); the normal is not normalised and not oriented towards the
+  // viewer.
   glm::vec3 ShadingNormal(std::uint32_t triangle, float u, float v) const;
   glm::vec3 VertexColor(std::uint32_t triangle, float u, float v) const;
   glm::vec2 TextureCoordinates(std::uint32_t triangle, float u, float v) const;
@@ -112,7 +112,7 @@ class RayScene {
     return shading_[triangle].material & ((1u << kMaterialBits) - 1);
   }
 
-  // What Embree's filter needs of a triangle of the second geometry.
+  // Data of a triangle of the second geometry for Embree's filter.
   struct Filter {
     OverTriangle<2> uv;
     const Texture* alpha = nullptr;

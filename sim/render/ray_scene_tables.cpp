@@ -1,4 +1,4 @@
-// The tables that hits are looked up in: of triangles, materials, pictures, lamps.
+// Lookup tables for hits: triangles, materials, pictures, lamps.
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -20,8 +20,7 @@ OverTriangle<3> ColorsOver(const Mesh& mesh, const glm::uvec3& t) {
   return mesh.colors.empty() ? OverTriangle<3>{{1, 1, 1}, {0, 0, 0}, {0, 0, 0}} : Over(mesh.colors, t);
 }
 
-// Level 0 is a white texel and level 1 a flat normal: what a material without texture looks up, so that the inner loop
-// need not ask.
+// Level 0 is a white texel and level 1 a flat normal, for materials without texture: the inner loop needs no branch.
 void RayScene::AppendTextures(const Scene& scene) {
   static constexpr std::uint32_t kWhite = 0x3fffffff, kFlatNormal = 512u | (512u << 10) | (1023u << 20);
   static constexpr std::uint32_t kPlain[2][2] = {{kWhite, kWhite}, {kFlatNormal, kFlatNormal}};
@@ -115,7 +114,7 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& 
   }
 }
 
-// Visible lamps are black surfaces that emit, seen from one side, and never in a shadow ray's way.
+// Visible lamps are black emissive surfaces, seen from one side, which cast no shadow.
 void RayScene::AppendLamps(const Scene& scene) {
   std::size_t mesh_index = scene.meshes.size();
   for (const Light& light : scene.lights) {

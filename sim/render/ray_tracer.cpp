@@ -27,8 +27,8 @@ namespace {
 constexpr int kTileSide = 32;  // a multiple of the block's side; the tiles do not depend on the number of threads
 static_assert(kTileSide % kBlockSide == 0);
 
-// Where in a sample's time the rows of a block are: the sample lasts from the first moment of the block's earliest row
-// to the last of its latest.
+// Times of a block's rows within a sample: the sample lasts from the start of the block's earliest row to the end of
+// its latest.
 struct BlockTime {
   double part_s = 0.0, row_s = 0.0;  // part_s: how long each row looks in one sample
 
@@ -144,7 +144,7 @@ class RayTracer final : public Renderer {
   const SurfaceTracer* surfaces() const override { return &surfaces_; }
 
  private:
-  // What the rows of an exposure look at: with a rolling shutter each row of blocks has samples of its own.
+  // Samples of an exposure: with a rolling shutter each row of blocks has its own.
   struct ExposureSamples {
     int per_row = 0;
     bool rolls = false;
@@ -231,8 +231,8 @@ class RayTracer final : public Renderer {
     }
   }
 
-  // By the golden ratio on from sample to sample: a pixel's moments in its parts of the exposure are spread evenly, so
-  // that together they are neither early nor late, and independent from pixel to pixel all the same.
+  // Moment of a sample, advanced by the golden ratio from sample to sample: a pixel's moments in its parts of the
+  // exposure are spread evenly, so that their mean is unbiased, and still independent from pixel to pixel.
   static float Moment(int sample) {
     const double turns = sample * 0.6180339887498949;
     return std::min(static_cast<float>(turns - std::floor(turns)), 0x1.fffffep-1f);

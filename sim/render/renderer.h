@@ -27,8 +27,8 @@ class Renderer {
   virtual void Expose(const Camera& camera, const Trajectory& motion, const Exposure& exposure, std::uint64_t key,
                       RadianceImage& out) const = 0;
 
-  // Exact queries of the geometry, as long as the renderer lives; null: this renderer has none, and a ray tracer of the
-  // same scene is to be asked.
+  // Exact queries of the geometry, as long as the renderer lives; null: this renderer has none, a ray tracer of the
+  // same scene is needed.
   virtual const SurfaceTracer* surfaces() const { return nullptr; }
 };
 

@@ -44,7 +44,7 @@ std::vector<glm::dvec2> DiscPoints(int n) {
     const double radius = std::sqrt((i + 0.5) / n);
     points.emplace_back(radius * std::cos(golden * i), radius * std::sin(golden * i));
   }
-  // Fisher and Yates's shuffle, always the same.
+  // Fisher-Yates shuffle with a fixed seed.
   for (int i = n - 1; i > 0; --i) {
     const PixelBits bits = PixelScramble(0x6c656e73u, static_cast<std::uint32_t>(i), 0);  // "lens"
     std::swap(points[static_cast<std::size_t>(i)], points[bits.point.u % (static_cast<std::uint32_t>(i) + 1u)]);
@@ -53,7 +53,7 @@ std::vector<glm::dvec2> DiscPoints(int n) {
 }
 
 PixelBits PixelScramble(std::uint64_t key, std::uint32_t x, std::uint32_t y) {
-  constexpr auto kStream = static_cast<Stream>(0x70697865u);  // "pixe": no other use of the key shares it
+  constexpr auto kStream = static_cast<Stream>(0x70697865u);  // "pixe": a stream of its own for this key
   const Words bits = RandomWords(key, kStream, 0, y, x);
   return {{bits[0], bits[1]}, bits[2], bits[3]};
 }

@@ -75,7 +75,7 @@ class SceneSurroundings : public Surroundings {
   }
 
   std::optional<Hit> Between(const glm::dvec3& a, const glm::dvec3& b) const override {
-    constexpr std::uint32_t kSolid = 0;  // the geometry of what is there everywhere
+    constexpr std::uint32_t kSolid = 0;  // the geometry of opaque surfaces
     constexpr double kPast = 1e-5;
     for (double from = 0; from <= 1;) {
       const RTCRayHit ray = Cast(rays_.embree(), a, b - a, 1, static_cast<float>(from));
@@ -108,7 +108,7 @@ class SceneSurroundings : public Surroundings {
 
   double Interest(const Pose& view) const override {
     constexpr int kSide = 5;
-    constexpr double kDark = 0.1;        // differences of what is darker do not count
+    constexpr double kDark = 0.1;        // differences between darker albedos are ignored
     double seen[kSide][kSide], sum = 0;  // logarithm; NaN: nothing
     for (int j = 0; j < kSide; ++j) {
       for (int i = 0; i < kSide; ++i) {

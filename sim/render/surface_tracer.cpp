@@ -33,7 +33,7 @@ struct Packet {
   bool Met(int i) const { return valid[i] != 0 && rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID; }
 };
 
-// A world at a moment: what stands still and, where there are any, its objects.
+// A world at one time: static geometry and, where there are any, its objects.
 struct Snapshot {
   Snapshot(const RayScene& rays, const View& view, const std::vector<Pose>& poses)
       : scene(rays), objects(rays, view.t_s, view.t_s), T_WO(poses) {}
@@ -59,8 +59,8 @@ struct Snapshot {
     glm::dvec3 normal{0};
     double offset = 0;  // of the origin, along the normal
   };
-  // Where ray i meets its triangle's plane, in double: Embree's own distance is a float's. At a grazing angle its is
-  // kept. `plane`: of the ray before, kept while the triangle is the same.
+  // Intersection of ray i with its triangle's plane, in double: Embree's own distance is single precision, and is kept
+  // at a grazing angle. `plane`: of the ray before, reused while the triangle is the same.
   double PlaneDistance(const Packet& packet, int i, const glm::dvec3& origin, const glm::dvec3& direction,
                        Plane& plane) const {
     const std::uint32_t triangle = Triangle(packet, i);
@@ -160,7 +160,7 @@ void SurfaceTracer::Visible(const View& view, std::span<const glm::dvec3> points
     snapshot.Meet(packet);
     Snapshot::Plane plane;
     for (int i = 0; i < count; ++i) {
-      if (!packet.Met(i)) continue;  // the ray slipped by at an edge: nothing is before the point
+      if (!packet.Met(i)) continue;  // the ray missed at an edge: nothing is in front of the point
       const std::size_t at = first + static_cast<std::size_t>(i);
       out[at] = snapshot.PlaneDistance(packet, i, eye_W, points_W[at] - eye_W, plane) >= 1 - kOwnSurface;
     }

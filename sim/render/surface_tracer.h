@@ -16,13 +16,13 @@ class RayScene;
 constexpr std::uint32_t kNoTriangle = 0xffffffffu;
 constexpr std::int32_t kWorld = -1;  // no object that moves
 
-// Where the ray through a pixel's centre meets the world. A surface point is named by its triangle and its place in it,
-// which stay what they are when the object that it is part of moves.
+// Intersection of a pixel centre's ray with the world: triangle and barycentric coordinates, which are constant for a
+// point of a moving object.
 struct SurfacePoint {
   std::uint32_t triangle = kNoTriangle;  // of all meshes, one after the other; kNoTriangle: nothing is seen
   float u = 0, v = 0;                    // corner 0 + u (corner 1 - corner 0) + v (corner 2 - corner 0)
   std::int32_t object = kWorld;          // in Scene::objects, which the triangle is of
-  double depth = 0;                      // Z in C [m]; what a fisheye lens sees beside or behind it has none above 0
+  double depth = 0;                      // Z in C [m]; beside or behind a fisheye lens it is 0 or less
   glm::dvec3 X_C{0.0};                   // in C [m], on the ray to 1e-6 px and on the triangle's plane, in double
 };
 

@@ -33,7 +33,7 @@ bool ReadCameraPose(Section& section, FileCameras& cameras, Pose& pose) {
 }
 
 // `camera`, one of a mesh file; or `position`, and either `look_at` (a point in W) with an optional `roll`, or
-// `orientation`. False: it is wrong.
+// `orientation`. False: it is invalid.
 bool ReadPose(Section& section, const MotionNames& names, Pose& pose) {
   const Range place{-1e6, 1e6};
   if (names.cameras != nullptr) section.Allow("camera");
@@ -63,7 +63,7 @@ bool ReadPose(Section& section, const MotionNames& names, Pose& pose) {
   return true;
 }
 
-// With `speed`: by how much faster a path must be flown so that this is its mean over [0, end_s]; 1 without.
+// Factor of speed with which the path's mean over [0, end_s] is `speed`; 1 without.
 double ReadPace(Section& section, const Trajectory& path, double end_s) {
   section.Allow("speed");
   if (!section.Has("speed")) return 1;

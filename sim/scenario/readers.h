@@ -11,13 +11,13 @@
 
 namespace sim {
 
-// A file named in a scenario, which lies in `folder`. Whether it is there is said when it is opened.
+// A file named in a scenario, relative to `folder`. Its existence is checked when it is opened.
 std::filesystem::path ReadFile(settings::Section& section, const std::string& key, const std::filesystem::path& folder);
 
-// Whether it is of letters, digits, '_' and '-', as a name that a file or folder gets.
+// Whether `name` consists of letters, digits, '_' and '-', as required for names of files and folders.
 bool IsPlainName(const std::string& name);
 
-// What a motion may name.
+// Names that a motion may refer to.
 struct MotionNames {
   const std::filesystem::path& folder;
   FileCameras* cameras = nullptr;  // none: of objects
@@ -29,9 +29,9 @@ MotionDescription ReadMotion(settings::Section& section, const MotionNames& name
 // Meshes, moving objects, lights and sky.
 void ReadWorld(settings::Section section, const std::filesystem::path& folder, WorldDescription& world);
 
-// The camera at `eye` that looks at `target`, upright in a world whose up is +y, then turned by roll_rad about its own
-// z axis (to the right, clockwise as the camera sees it, when positive). Straight up, the camera's upper edge is
-// towards +z, straight down towards -z. The two points must differ.
+// Orientation of the camera at `eye` with its axis through `target`, upright in a world whose up is +y, then turned by
+// roll_rad about its own z axis (positive: clockwise in the image). Straight up, the camera's upper edge is towards +z,
+// straight down towards -z. The two points must differ.
 glm::dquat LookAt(const glm::dvec3& eye, const glm::dvec3& target, double roll_rad);
 
 }  // namespace sim

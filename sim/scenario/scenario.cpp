@@ -56,7 +56,7 @@ void CheckScripts(Section world, const Scenario& scenario) {
   }
 }
 
-// Defaults of the other keys; what they are fitted to: docs/sensor.md.
+// Presets: defaults of the other keys; their sources: docs/sensor.md.
 constexpr std::array<std::pair<const char*, const char*>, 6> kPresets = {
     {{"none", "{}"},
      {"kinect", R"({exposure: 15 ms, rolling_shutter: 26 ms, mosaic: demosaiced, full_well: 13000 e, read_noise: 4 e,
@@ -120,7 +120,7 @@ void ReadCamera(Section section, FileCameras& cameras, CameraParams& camera) {
   if (reader.good()) section.Reject(Problems(camera));
 }
 
-// What all cameras have in common is read before.
+// Settings common to all cameras are read before.
 void ReadRig(Section root, FileCameras& cameras, Scenario& scenario) {
   for (Section& item : root.List("cameras")) {
     RigCamera camera{"cam" + std::to_string(scenario.cameras.size()), {}, scenario.sensor, {}, 0};
@@ -152,7 +152,7 @@ void Refuse(Section& section, const std::string& path, const std::string& key) {
                           "'world.points'");
 }
 
-// `world.points`. What belongs to rendering is refused beside it.
+// `world.points`. Settings of rendering are rejected beside it.
 PointDescription ReadPoints(Section& root, Section& world, const CameraParams& camera) {
   for (const char* key : {"meshes", "objects", "lights", "background"}) Refuse(world, "world.", key);
   for (const char* key : {"cameras", "sensor", "render", "truth", "landmarks", "imu"}) Refuse(root, "", key);
@@ -163,12 +163,12 @@ PointDescription ReadPoints(Section& root, Section& world, const CameraParams& c
   if (good && section.Has("landmarks")) {
     section.Reject(Problems(points, camera));
   } else {
-    section.IgnoreRest();  // which keys there are depends on the kind of landmarks
+    section.IgnoreRest();  // the valid keys depend on the kind of landmarks
   }
   return points;
 }
 
-// Whether what is seen at all places within the margin has Z > 0. The corners look farthest from the axis.
+// Whether all pixels within the margin have rays with Z > 0. The corners have the largest angle.
 bool LooksAhead(const CameraParams& c, double margin_px) {
   if (c.lens != Lens::fisheye) return true;
   for (const double u : {margin_px - 0.5, c.width - margin_px - 0.5}) {

@@ -204,8 +204,8 @@ void Visit(V& v, RigCamera& p) {
   v("trigger_offset", p.trigger_offset_s, {Unit::time, Range{0, 100}, "of its stamps; less than 1 / rate"});
 }
 
-// The first two cameras are a rectified pair: equal pinholes side by side, along x, at the same times. What they are
-// not, or nothing.
+// Checks that the first two cameras are a rectified pair: equal pinholes side by side, along x, at the same times.
+// Returns the violated condition, or nothing.
 std::string RectifiedProblem(const std::vector<RigCamera>& cameras);
 
 struct Scenario {

@@ -77,13 +77,13 @@ MeshDescription ReadMesh(Section& section, const std::filesystem::path& folder) 
   return mesh;
 }
 
-// The name is another's, too.
+// Adds the problem of a repeated name.
 void RejectDoubled(Section& section, const char* at, const std::string& name, const std::vector<std::string>& others) {
   if (!name.empty() && std::ranges::count(others, name) > 0)
     section.Reject(at, "'name': another entry is called '" + name + "' already");
 }
 
-// `names`: of what was read before.
+// `names`: those read before.
 ObjectDescription ReadObject(Section& section, const std::filesystem::path& folder, std::vector<std::string>& names) {
   ObjectDescription object;
   object.mesh = ReadMesh(section, folder);

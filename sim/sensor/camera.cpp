@@ -40,7 +40,7 @@ glm::dvec2 FisheyeProject(const CameraParams& c, const glm::dvec3& direction) {
 std::optional<glm::dvec3> FisheyeUnproject(const CameraParams& c, const glm::dvec2& point) {
   const double radius = glm::length(point);
   if (radius == 0) return glm::dvec3(0.0, 0.0, 1.0);
-  // March to the first angle that is too large, then halve and refine: a fold on the way is seen.
+  // March to the first angle that is too large, then halve and refine: a fold on the way is detected.
   constexpr int kSteps = 256;
   double below = 0, above = 0;
   for (int i = 1; i <= kSteps && above == 0; ++i) {

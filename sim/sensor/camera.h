@@ -67,7 +67,7 @@ class Camera {
   int width() const { return params_.width; }
   int height() const { return params_.height; }
 
-  // Point in C -> pixel, lens distortion included. Z > 0; a fisheye lens sees every direction but that of -z.
+  // Point in C -> pixel, lens distortion included. Z > 0; of a fisheye lens any direction but -z.
   glm::dvec2 Project(const glm::dvec3& X_C) const;
 
   // Unproject. Throws std::invalid_argument where there is none.

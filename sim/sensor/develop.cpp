@@ -53,11 +53,12 @@ ResponseCurve::ResponseCurve(Response response) {
 }
 
 Image Demosaic(const Image& mosaic, bool edge_aware) {
-  // OpenCV leaves what is narrower than 3 pixels black. Mirrored about its first and last pixels it keeps the pattern.
+  // OpenCV leaves pictures narrower than 3 pixels black. Mirrored about the first and last pixels they keep the
+  // pattern.
   const int margin = std::min(mosaic.width, mosaic.height) < 3 ? 2 : 0;
   cv::Mat wide = View(mosaic), rgb;
   if (margin > 0) cv::copyMakeBorder(wide, wide, margin, margin, margin, margin, cv::BORDER_REFLECT_101);
-  // OpenCV names a pattern after its second row's second and third pixels: what it calls BG has red at (0, 0).
+  // OpenCV names a pattern after its second row's second and third pixels: its BG has red at (0, 0).
   cv::cvtColor(wide, rgb, edge_aware ? cv::COLOR_BayerBG2RGB_EA : cv::COLOR_BayerBG2RGB);
   if (margin > 0) rgb = rgb(cv::Rect(margin, margin, mosaic.width, mosaic.height)).clone();
   return ToImage(rgb, mosaic.bits);

@@ -50,7 +50,7 @@ double AutoExposure::Brightness(const RadianceImage& frame, double signal) const
 void AutoExposure::Meter(const RadianceImage& frame) {
   const AutoExposureParams& p = sensor_.auto_exposure;
   const double lowest = p.shortest_s, highest = p.longest_s * p.highest_gain;
-  // The wanted signal by halving: brightness grows with it.
+  // Bisection of the signal: brightness increases with it.
   double low = std::log(lowest), high = std::log(highest);
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);

@@ -17,17 +17,17 @@ struct Exposure {
   double middle_s = 0.0;
   double exposure_s = 0.0;   // >= 0
   double row_delay_s = 0.0;  // from a row to the next
-  int time_samples = 1;      // equal parts of the exposure that are looked at, each at its own moment
+  int time_samples = 1;      // equal parts of the exposure, each sampled at its own moment
   double aperture_m = 0.0;   // diameter of a thin lens at the camera's centre, in its x-y plane; 0: a pinhole
   double focus_m = 1.0;      // Z of the plane that the lens makes sharp
 
   double RowMiddle(double row, int height) const { return middle_s + row_delay_s * (row - 0.5 * (height - 1)); }
 };
 
-// Everything wrong with it, one sentence each; empty when all is well.
+// Problems of the exposure, one sentence each; empty if it is valid.
 std::vector<std::string> Problems(const Exposure& exposure);
 
-// What the sensor is set to for one frame.
+// Exposure time and gain of one frame.
 struct ExposureSetting {
   double exposure_s = 0.0;
   double gain = 1.0;

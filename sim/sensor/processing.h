@@ -1,5 +1,5 @@
-// What a camera does beside counting light: the point-spread function of its lens, before the sensor; and the image
-// processing behind it, in its order, of fractions of the scale: 0 ... 1.
+// Image processing of a camera beside photon counting: the point-spread function of its lens, before the sensor; and
+// the processing pipeline after it, in its order, on fractions of the scale: 0 ... 1.
 // Source: Lindeberg 1990, "Scale-space for discrete signals", equation (7): the discrete Gaussian, whose variance is
 //   exactly sigma^2 at any width: T(n) = exp(-sigma^2) I_n(sigma^2), I_n the modified Bessel function.
 #pragma once

@@ -218,7 +218,7 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
   const auto fits = [&](const std::vector<float>& fixed) { return fixed.empty() || fixed.size() == height * row_size; };
   if (!fits(pattern_.sensitivity) || !fits(pattern_.dark_e_s))
     throw std::invalid_argument("sensor: the picture has not the size of the fixed pattern");
-  // At 0 s the exposure is an idea (no blur), not a lack of light.
+  // Exposure time 0 s stands for an exposure without blur, not without light.
   const double longer = params_.exposure_s > 0 ? setting.exposure_s / params_.exposure_s : 1.0;
   const double per_radiance = longer * params_.full_well_e / params_.white;
   const bool noisy = params_.shot_noise || params_.read_noise_e > 0;

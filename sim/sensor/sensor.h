@@ -15,7 +15,7 @@
 
 namespace sim {
 
-// Ranges, and rules between several values; empty when all is well.
+// Ranges, and rules between several values; empty if valid.
 std::vector<settings::FieldProblem> Problems(SensorParams params);
 
 // Fixed-pattern noise: spatial nonuniformity of sensitivity (PRNU) and dark current (DSNU) of every pixel and channel,
@@ -26,7 +26,7 @@ struct FixedPattern {
 };
 FixedPattern MakeFixedPattern(const SensorParams& params, std::uint64_t seed, int width, int height, int channels);
 
-// Per pixel and channel, with L the mean linear radiance of the exposure, in the order of the light's way:
+// Per pixel and channel, with L the mean linear radiance of the exposure, in the order of the signal path:
 //   light                N = full_well L / white * (exposure time / exposure_s) * (1 + photo_response_sigma z_fixed)
 //   dark current         D = (dark_current + dark_sigma z'_fixed, and more where the pixel is hot) * exposure time
 //   shot noise           n ~ Poisson(N + D); from a mean of 16 on by n = mean + sqrt(mean) z + (z^2 - 1) / 6, whose
@@ -42,13 +42,13 @@ FixedPattern MakeFixedPattern(const SensorParams& params, std::uint64_t seed, in
 // independent.
 class Sensor {
  public:
-  // width, height: of its pictures; only a fixed pattern needs them, 0 is well without. Throws std::invalid_argument
-  // listing all Problems.
+  // width, height: of its pictures; needed by a fixed pattern only, else 0. Throws std::invalid_argument listing all
+  // Problems.
   Sensor(const SensorParams& params, std::uint64_t seed, int width = 0, int height = 0);
 
-  // Depends on its arguments, the settings and the seed alone. Works in the calling thread's TBB arena. Throws
-  // std::logic_error for a radiance that is negative or not a number: the renderer's fault; std::invalid_argument when
-  // the picture has another size than the fixed pattern.
+  // Depends on its arguments, the settings and the seed alone. Runs in the calling thread's TBB arena. Throws
+  // std::logic_error for a radiance that is negative or not a number (a fault of the renderer); std::invalid_argument
+  // when the picture has another size than the fixed pattern.
   // of_frame: exposure time and gain of this frame instead of the settings' own.
   Image Capture(const RadianceImage& radiance, std::int64_t frame,
                 const std::optional<ExposureSetting>& of_frame = std::nullopt) const;

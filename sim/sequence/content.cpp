@@ -28,8 +28,8 @@ std::vector<Simulator> CamerasOf(const Simulator& simulator, const SequenceConte
   return content.rig ? simulator.Cameras() : std::vector{simulator};
 }
 
-// To where a camera's files are: what EuRoC and ICL-NUIM have no place for is in truth/; of a rig, each camera has a
-// folder.
+// Moves files to a camera's folder: files without a place in EuRoC or ICL-NUIM go to truth/; of a rig, each camera has
+// a folder.
 void Place(const Simulator& camera, const SequenceContent& content, std::vector<StreamFile>&& from,
            std::vector<StreamFile>& files) {
   for (StreamFile& file : from) {

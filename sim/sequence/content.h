@@ -17,13 +17,13 @@ struct SequenceContent {
   bool rig = true;                   // all cameras of a rig; false: the first, as if it were the only one
 };
 
-// Throws std::invalid_argument for frames that the simulator does not have, and for what the layout has no place for.
+// Throws std::invalid_argument for frames out of range and for streams that the layout does not support.
 void Validate(const SequenceContent& content, const Simulator& simulator);
 
 // The picture of a frame, relative to the sequence's folder.
 std::string ImagePath(const Simulator& camera, const SequenceContent& content, std::int64_t index);
 
-// Everything that is a frame's own, rendered and encoded: a pure function of its index, whatever else is written.
+// Files of a frame, rendered and encoded: a pure function of its index.
 std::vector<StreamFile> FrameFiles(const Simulator& simulator, const SequenceContent& content, std::int64_t index);
 
 // Lists, truth, camera, manifest of the first `whole` frames of the content. Of fewer frames no file is longer.
@@ -31,7 +31,7 @@ std::vector<StreamFile> WholeFiles(const Simulator& simulator, const SequenceCon
 
 inline constexpr char kManifestName[] = "manifest.json";
 
-// JSON: program version, layout, seed, range of frames asked for, frames that are there (`whole`), camera, scenario.
+// JSON: program version, layout, seed, requested range of frames, number of frames written (`whole`), camera, scenario.
 std::string Manifest(const Simulator& simulator, const SequenceContent& content, std::int64_t whole);
 
 // Differences of two manifests apart from the number of frames: "scenario.sensor.exposure is 0.01 there, not 0.002", a

@@ -103,12 +103,12 @@ inline std::int16_t Size(std::int16_t x) { return std::max(x, static_cast<std::i
 
 }  // namespace
 
-// Left of the first pixel are zeros: of those three neighbours the one above is nearest.
+// Neighbours left of the first pixel are zeros: the one above is then nearest.
 VOBENCH_FOR_AVX2_TOO
 void PaethFilter(const std::uint8_t* row, const std::uint8_t* above, std::size_t size, std::size_t pixel,
                  std::uint8_t* __restrict filtered) {
   for (std::size_t i = 0; i < std::min(pixel, size); ++i) filtered[i] = static_cast<std::uint8_t>(row[i] - above[i]);
-  // Sixteen bits and no jumps, so that the compiler makes vectors of it.
+  // Sixteen bits and no branches, for vectorisation.
   for (std::size_t i = pixel; i < size; ++i) {
     const std::int16_t a = row[i - pixel], b = above[i], c = above[i - pixel];
     const std::int16_t to_a = static_cast<std::int16_t>(b - c), to_b = static_cast<std::int16_t>(a - c);
@@ -154,7 +154,7 @@ Bytes EncodeDepthPng(std::span<const float> depth_m, int width, int height) {
   std::vector<std::uint16_t> fifths_of_millimetres(depth_m.size());
   for (std::size_t i = 0; i < depth_m.size(); ++i) {
     const float value = 5000.0f * depth_m[i];
-    const float kept = value < 65535.5f ? value : 0.0f;  // not a number: 0, too
+    const float kept = value < 65535.5f ? value : 0.0f;  // NaN: 0, too
     const int below = static_cast<int>(std::max(kept, 0.0f));
     const int rounded = below + static_cast<int>(kept - static_cast<float>(below) >= 0.5f);
     fifths_of_millimetres[i] = static_cast<std::uint16_t>(rounded);
@@ -175,7 +175,7 @@ Bytes EncodeExr(std::span<const float> pixels, int width, int height, int channe
   for (std::size_t c = 0; c < n; ++c) {
     const char* name = kNames[n == 3][c];
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-    // OpenEXR's frame buffer takes a pointer to what it will only read.
+    // OpenEXR's frame buffer takes a non-const pointer, which it only reads.
     char* base = const_cast<char*>(reinterpret_cast<const char*>(pixels.data() + c));
     buffer.insert(name,
                   Imf::Slice(Imf::FLOAT, base, n * sizeof(float), n * sizeof(float) * static_cast<std::size_t>(width)));

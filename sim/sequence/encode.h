@@ -31,8 +31,8 @@ std::vector<std::uint8_t> EncodePng(int width, int height, int channels, std::sp
 std::vector<std::uint8_t> EncodePng(int width, int height, int channels, std::span<const std::uint16_t> samples,
                                     const std::string& comment = "");
 std::vector<std::uint8_t> EncodePng(const Image& image);
-// Depth: 16 bits, round(5000 Z), 0 for what is 0 or does not fit, beyond kDepthRange_m. A picture with such pixels says
-// how many, in a comment (tEXt).
+// Depth: 16 bits, round(5000 Z), 0 where Z is 0 or beyond kDepthRange_m. The number of out-of-range pixels, if any, is
+// stored in a comment (tEXt).
 constexpr double kDepthRange_m = 65535.5 / 5000;
 std::vector<std::uint8_t> EncodeDepthPng(std::span<const float> depth_m, int width, int height);
 

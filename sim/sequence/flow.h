@@ -11,7 +11,7 @@
 
 namespace sim {
 
-// What the Middlebury format calls unknown: above 1e9.
+// Unknown flow in the Middlebury format: above 1e9.
 constexpr float kUnknownFlow = 1e10f;
 
 struct FlowImage {
@@ -32,8 +32,8 @@ FlowImage FlowBetween(const SurfaceTracer& surfaces, const Camera& camera, std::
 // Whether the lens projects the point anywhere: Z > 0; a fisheye, whatever is not straight behind it.
 bool HasPixel(const Camera& camera, const glm::dvec3& X_C);
 
-// Whether the camera's image has the point X_C, and there only once: `pixel` is its projection. Outside of the
-// image a lens may fold what it cannot see back into it.
+// Whether X_C is inside the camera's image; `pixel` is its projection. Outside its field of view a distorted lens may
+// fold points back into the image: these are excluded.
 bool InImage(const Camera& camera, const glm::dvec3& X_C, const glm::dvec2& pixel);
 
 }  // namespace sim

@@ -31,8 +31,8 @@ std::vector<JournalFile> Summed(std::span<const StreamFile> files);
 // "index path size crc32 path size crc32 ...", with the newline.
 std::string JournalLine(std::int64_t index, std::span<const JournalFile> files);
 
-// The frames of which every file in `folder` has its size and sum in the journal there; each is read whole.
-// A line that breaks off or makes no sense counts for nothing. No journal: no frames.
+// The frames of which every file in `folder` has its size and checksum in the journal there; each file is read whole.
+// Truncated or malformed lines are ignored. No journal: no frames.
 Journal ReadJournal(const std::filesystem::path& folder);
 
 }  // namespace sim

@@ -19,8 +19,8 @@ enum class Layout { tum, euroc, icl };
 
 std::string ToString(Layout layout);
 
-// What the scenario has and the layout has no place for, one sentence each: EuRoC's camera has no k3, ICL-NUIM's time
-// is index / 30 s.
+// Elements of the scenario that the layout cannot represent, one sentence each: EuRoC's camera has no k3, ICL-NUIM's
+// time is index / 30 s.
 std::vector<std::string> Problems(Layout layout, const Scenario& scenario);
 
 // Of a frame's pictures, relative to the sequence's folder.
@@ -47,10 +47,10 @@ struct EurocBody {
 // Lists of a camera's frames and truth, with a line for each of `frames`, in order of time; and its sensor files.
 std::vector<StreamFile> Lists(Layout layout, const Scenario& scenario, std::span<const StampedTruth> frames,
                               std::size_t camera = 0);
-// The truth of the body, in EuRoC's form (of S, in R), or TUM's, which only a rig has; and what else there is once.
+// The truth of the body, in EuRoC's form (of S, in R), or TUM's, which only a rig has; and files that exist once.
 std::vector<StreamFile> BodyLists(Layout layout, const Scenario& scenario, std::span<const StampedTruth> body);
 
-// Twelve decimals: beyond any use, so that rounding is never a question; a negative zero loses its sign.
+// Twelve decimals, finer than any rounding that matters; a negative zero loses its sign.
 std::string FormatDecimal(double number);
 // "stamp tx ty tz qx qy qz qw" and "stamp vx vy vz wx wy wz", with the newline.
 std::string TruthLine(std::int64_t stamp_ns, const Truth& truth);

@@ -12,7 +12,7 @@ namespace sim {
 namespace fs = std::filesystem;
 namespace {
 
-// Nothing is there, or nothing but a manifest that a kill left unfinished.
+// Whether the folder is empty, or has only a manifest left unfinished by a killed process.
 bool IsEmpty(const fs::path& folder) {
   if (!fs::exists(fs::symlink_status(folder))) return true;
   if (!fs::is_directory(folder)) return false;
@@ -104,8 +104,8 @@ void SequenceWriter::RequireSame(const Journal& whole) const {
   }
 }
 
-// Everything goes but the lists, the journal and the frames that are whole. All that is there is ours: the manifest is,
-// and the caller asked for this folder.
+// Removes all but the lists, the journal and the complete frames. All content belongs to this sequence: its manifest
+// does.
 void SequenceWriter::RemoveStrays(const std::vector<StreamFile>& lists) const {
   std::set<fs::path> kept = {folder_ / kJournalName};
   for (const StreamFile& file : lists) kept.insert(folder_ / file.path);
@@ -172,7 +172,7 @@ std::int64_t SequenceWriter::Stop() noexcept {
   try {
     KeepOnly(whole);
   } catch (...) {
-    // What is left is what a kill would have left: resuming mends it.
+    // The folder is in the state that a killed process leaves: resuming repairs it.
   }
   lock_.Close();
   return whole;

@@ -20,18 +20,18 @@ namespace sim {
 // Usage:  SequenceWriter writer(simulator, folder, content, jobs, SequenceWriter::Start::fresh);
 //         while (writer.Wait() > 0) {}      // progress in between
 //         writer.Finish();
-// First come the lists, the truth and the manifest of all frames, then the frames, `jobs` of them at the same time:
-// one is encoded while another is rendered. Every file appears whole under its name, and the journal lists the frames
-// that are whole. The bytes depend neither on `jobs`, nor on the order of the frames, nor on how often work stopped;
-// those of a frame not on the range.
+// The lists, the truth and the manifest of all frames are written first, then the frames, `jobs` of them at the same
+// time: one is encoded while another is rendered. Files are written atomically, and the journal lists the complete
+// frames. The bytes depend neither on `jobs`, nor on the order of the frames, nor on interruptions; those of a frame
+// not on the range.
 class SequenceWriter {
  public:
   enum class Start { fresh, resume };
 
-  // `simulator` must outlive the writer. The folder is made; fresh, it must not be there or be empty. To resume, it
-  // must be of the same content: what is whole is kept, the rest is made again; nothing there is the same as fresh.
-  // Throws std::invalid_argument for a bad content or jobs < 1, and where the folder is not of this content, naming
-  // every setting that differs, or the frame that does not come out as it is there (a mesh or texture has changed).
+  // `simulator` must outlive the writer. The folder is made; fresh, it must not exist or be empty. To resume, it must
+  // be of the same content: complete frames are kept, the rest is made again; an empty one is the same as fresh. Throws
+  // std::invalid_argument for a bad content or jobs < 1, and where the folder is not of this content, naming every
+  // setting that differs, or the frame whose bytes differ when rendered again (a mesh or texture has changed).
   // std::runtime_error when the folder cannot be made or written, or another process is writing it.
   SequenceWriter(const Simulator& simulator, const std::filesystem::path& folder, const SequenceContent& content,
                  int jobs, Start start);
@@ -39,20 +39,20 @@ class SequenceWriter {
   SequenceWriter(const SequenceWriter&) = delete;
   SequenceWriter& operator=(const SequenceWriter&) = delete;
 
-  // How many frames were whole at the start: 0 if fresh.
+  // Number of frames that were complete at the start: 0 if fresh.
   std::int64_t found() const { return found_; }
 
-  // Waits until frames are whole that were neither at the start nor when it was last asked, and returns how many. 0:
-  // all are. Throws std::runtime_error naming a file that could not be written, and why.
+  // Waits for newly completed frames and returns their number since the last call; 0: all frames are complete. Throws
+  // std::runtime_error naming a file that could not be written, and why.
   std::int64_t Wait();
 
-  // Ends the work. The folder then holds the first frames up to the first that is not whole, and its lists name exactly
-  // these; a folder without a frame goes, with the parents that were made for it. Returns the number of frames. It
-  // needs no room on the disk and does not throw.
+  // Ends the work. The folder then holds the frames before the first incomplete one, and its lists name exactly these;
+  // a folder without a frame is removed, with the parents that were made for it. Returns the number of frames. Needs no
+  // disk space and does not throw.
   std::int64_t Stop() noexcept;
 
-  // When all frames are whole: the sequence is complete but for the journal, which is to go (kJournalName) when the
-  // folder has its last name. Throws std::logic_error while frames are left.
+  // Call when all frames are complete: the sequence is final but for the journal, to be removed (kJournalName) when the
+  // folder has its final name. Throws std::logic_error while frames are left.
   void Finish();
 
  private:

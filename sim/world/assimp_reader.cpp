@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file that cannot be read past its end for ever: assimp's PLY importer (5.2) does so when a header is cut off.
+// Input file with a bound on reads past its end: assimp's PLY importer (5.2) never ends on a truncated header.
 class BoundedStream : public Assimp::IOStream {
  public:
   explicit BoundedStream(std::unique_ptr<Assimp::IOStream> stream) : stream_(std::move(stream)) {}
@@ -46,7 +46,7 @@ class BoundedStream : public Assimp::IOStream {
   int empty_reads_ = 0;
 };
 
-// Importers quietly do without a side file that cannot be opened.
+// File access of importers, which silently skip side files that cannot be opened.
 class ImporterFiles : public Assimp::DefaultIOSystem {
  public:
   explicit ImporterFiles(MeshFiles& files) : files_(files) {}
@@ -64,7 +64,7 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
   }
 
  private:
-  // Blanks at the beginning of an element's text, which assimp (5.2) takes for the end of its numbers.
+  // Removes blanks at the beginning of an element's text, which assimp (5.2) takes for the end of its numbers.
   static Assimp::IOStream* WithoutBlanks(const fs::path& file) {
     const std::string text = base::ReadFile(file).value_or("");
     auto* bytes = new std::uint8_t[text.size() + 1];
@@ -80,7 +80,7 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
   MeshFiles& files_;
 };
 
-// FBX states its unit in centimetres and its axes; assimp (5.2) leaves both to whoever reads.
+// FBX states its unit in centimetres and its axes; assimp (5.2) converts neither.
 aiMatrix4x4 FbxToMetres(const aiScene& scene) {
   double unit = 1;
   int axis[3] = {0, 1, 2}, sign[3] = {1, 1, 1};  // of what becomes x, y, z
@@ -269,7 +269,7 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
   importer.SetIOHandler(new ImporterFiles(files));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(files.mesh().string(), aiProcess_ValidateDataStructure);
-  if (scene != nullptr) import.problem = CountProblem(*scene);  // what is too large is not worked on
+  if (scene != nullptr) import.problem = CountProblem(*scene);  // too large a scene is not processed
   if (scene != nullptr && import.problem.empty()) {
     scene =
         importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
@@ -277,7 +277,7 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
   }
   if (scene == nullptr) {
     const std::string reason = importer.GetErrorString();
-    const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's words for it
+    const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's message
     const bool too_much = reason.find("bad_alloc") != std::string::npos;              // the library's
     import.problem = only_lines ? "has no triangles"
                      : too_much ? "cannot be read: the importer (assimp) needs more memory than a file of this size may"

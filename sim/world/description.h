@@ -14,7 +14,7 @@
 
 namespace sim {
 
-// What a surface has in the place of the file's material.
+// Replacement of a material of the file.
 struct MaterialDescription {
   std::string name;                   // of the file's material
   std::optional<glm::dvec3> color{};  // linear
@@ -26,7 +26,7 @@ void Visit(V& v, MaterialDescription& p) {
   v("color", p.color, {kOfLight, "albedo (linear) in its place; with texture: a factor on it"});
 }
 
-// A mesh file set into the world: X_W = position + R(orientation) * scale * diag(stretch) * X_file.
+// Placement of a mesh file in the world: X_W = position + R(orientation) * scale * diag(stretch) * X_file.
 struct MeshDescription {
   std::filesystem::path file;  // glTF, GLB, OBJ, PLY, and whatever else assimp reads
   glm::dvec3 position{0.0};    // [m]
@@ -49,13 +49,13 @@ void Visit(V& v, MeshDescription& p) {
   v("color", p.color, {kOfLight, "albedo (linear) instead of the file's materials; with texture: a factor on it"});
 }
 
-// A mesh file that moves as a rigid body. It is set into the object's own frame O as a mesh is set into the world.
+// A mesh file that moves as a rigid body. It is placed in the object's own frame O as a mesh is in the world.
 struct ObjectDescription {
   MeshDescription mesh;      // its name is that of the object's file of poses
   MotionDescription motion;  // T_WO
 };
 
-// What a texture that is not there is: an error, or grey (a warning).
+// Treatment of missing textures: an error, or grey (a warning).
 enum class MissingTextures { error, grey };
 
 struct WorldDescription {
@@ -66,7 +66,7 @@ struct WorldDescription {
   std::vector<MeshDescription> meshes;
   std::vector<ObjectDescription> objects;
   std::vector<Light> lights;
-  glm::dvec3 background{0.0};  // linear radiance of a ray that meets nothing; not used where there is a sky
+  glm::dvec3 background{0.0};  // linear radiance of a ray that meets no surface; unused where there is a sky
   std::optional<SkyDescription> sky;
 };
 // But for meshes, objects and lights.

@@ -17,7 +17,7 @@ std::vector<FileCamera> CamerasOf(const WorldDescription& world) {
   std::vector<FileCamera> cameras;
   for (const MeshDescription& mesh : world.meshes) {
     const std::string extension = LowerExtension(mesh.file);
-    std::error_code error;  // a file that is not there is said when the mesh is loaded
+    std::error_code error;  // a missing file is reported when the mesh is loaded
     const bool has_cameras = extension == ".gltf" || extension == ".glb";
     if (!has_cameras || !std::filesystem::is_regular_file(mesh.file, error)) continue;
     const MeshImport import = ImportMesh(mesh.file, world.folders, true);

@@ -1,6 +1,6 @@
 // Cameras in the glTF files of a world, by name.
-// Source: Khronos, "glTF 2.0 Specification", 3.10: a camera looks along -z of its node, up is y, and scaling of nodes is
-// ignored.
+// Source: Khronos, "glTF 2.0 Specification", 3.10: a camera looks along -z of its node, up is y, and scaling of nodes
+// is ignored.
 #pragma once
 
 #include <optional>
@@ -21,10 +21,10 @@ struct FileCamera {
 
 class FileCameras {
  public:
-  // The world must outlive it. Files are opened when the first camera is asked for.
+  // The world must outlive it. Files are opened at the first call of At.
   explicit FileCameras(const WorldDescription& world) : world_(world) {}
 
-  // name: NAME, or MESH/NAME. Throws std::runtime_error where not exactly one is called so, with all that there are.
+  // name: NAME, or MESH/NAME. Throws std::runtime_error listing all cameras unless exactly one has this name.
   const FileCamera& At(const std::string& name);
 
  private:

@@ -22,7 +22,7 @@ using nlohmann::json;
 
 [[noreturn]] void Fail(const std::string& what) { throw std::runtime_error(what); }
 
-// Types of components, and what 1 is written as where integers are normalised.
+// Types of components, and the value of 1 in normalised integers.
 struct ComponentType {
   int code;
   std::size_t bytes;
@@ -61,7 +61,7 @@ std::size_t Whole(const json& object, const char* key) {
   return Whole(object, key, 0);
 }
 
-// `size` bytes from `offset` of what has `all`; nothing may overflow.
+// `size` bytes from `offset` of `all`, checked without overflow.
 std::span<const std::uint8_t> Part(std::span<const std::uint8_t> all, std::size_t offset, std::size_t size,
                                    const char* what) {
   if (offset > all.size() || size > all.size() - offset) Fail(std::string(what) + " goes beyond its buffer's end");

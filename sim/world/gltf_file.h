@@ -26,7 +26,7 @@ struct GltfTable {
 // glTF 1.0, which assimp reads.
 struct OlderGltf {};
 
-// Whatever is wrong throws std::runtime_error or nlohmann::json::exception; OlderGltf.
+// Throws std::runtime_error or nlohmann::json::exception for invalid files; OlderGltf.
 class GltfFile {
  public:
   explicit GltfFile(MeshFiles& files);
@@ -42,7 +42,7 @@ class GltfFile {
     const auto found = object.find(key);
     return found == object.end() ? otherwise : found->get<std::array<double, n>>();
   }
-  // An extension of an object; null: it has not.
+  // An extension of an object; null: it has none.
   static const nlohmann::json* Extension(const nlohmann::json& object, const char* name);
 
   GltfTable ReadTable(std::size_t accessor);
@@ -51,7 +51,7 @@ class GltfFile {
   // The bytes of a "data:" URI; none for others.
   static std::optional<std::string> DataOf(const std::string& uri);
 
-  // The value of a component as glTF's normalised integers are meant.
+  // The value of a component, with glTF's normalisation of integers.
   static float Normalised(double value, int component_type, bool normalised);
 
  private:
@@ -78,7 +78,7 @@ struct DracoAttribute {
   bool normalised;
 };
 
-// Throws std::runtime_error for damaged data, and for an attribute that is not in it.
+// Throws std::runtime_error for damaged data and for missing attributes.
 DracoMesh DecodeDraco(std::span<const std::uint8_t> bytes, const std::map<std::string, DracoAttribute>& attributes);
 
 }  // namespace sim

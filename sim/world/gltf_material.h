@@ -18,7 +18,7 @@ class GltfMaterials {
  public:
   GltfMaterials(GltfFile& file, MeshImport& import) : file_(file), import_(import) {}
 
-  // The index in the scene of a primitive's material, read when first asked for; without one: glTF's default.
+  // The index in the scene of a primitive's material, read at its first use; without one: glTF's default.
   unsigned MaterialOf(const nlohmann::json& primitive);
 
  private:

@@ -25,7 +25,7 @@ constexpr int kDeepestNode = 1000;
 constexpr int kTriangles = 4, kStrip = 5, kFan = 6;  // modes of a primitive
 constexpr std::size_t kMostInstances = 1 << 20, kMostUvSets = 8;
 
-// What is seen instead of an extension that is not applied; empty: it is applied.
+// Appearance without an unsupported extension; empty: it is supported.
 constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
     {"KHR_texture_transform", ""},
     {"KHR_materials_emissive_strength", ""},
@@ -37,7 +37,7 @@ constexpr std::pair<std::string_view, std::string_view> kExtensions[] = {
     {"KHR_meshopt_compression", ""},
     {"EXT_texture_webp", ""},
     {"EXT_mesh_gpu_instancing", ""},
-    {"KHR_texture_basisu", ""},  // a picture that has no other version is refused
+    {"KHR_texture_basisu", ""},  // a picture without another version is rejected
     {"KHR_node_visibility", ""},
     {"FB_ngon_encoding", ""},  // of polygons: the triangles are the same
     {"KHR_xmp_json_ld", ""},

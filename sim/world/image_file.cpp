@@ -24,7 +24,7 @@ std::uint32_t BigEndian32(Bytes b) {
 
 std::string_view AsChars(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
-// Of a PNG that has its end.
+// Checks the checksums of a PNG that has its end.
 void CheckSums(Bytes bytes) {
   for (std::size_t at = kPngSignature.size(); at + 12 <= bytes.size();) {  // length, type, data, checksum
     const std::size_t length = BigEndian32(bytes.subspan(at));
@@ -93,7 +93,7 @@ DecodedImage DecodeTga(Bytes file, bool with_alpha) {
   return image;
 }
 
-// Without colour profiles, which are not applied: libpng complains of common ones on the terminal.
+// Removes colour profiles, which are not applied: libpng warns of common ones on the terminal.
 std::vector<std::uint8_t> WithoutProfile(Bytes png) {
   std::vector<std::uint8_t> out(png.begin(), png.begin() + kPngSignature.size());
   for (std::size_t at = kPngSignature.size(); at + 12 <= png.size();) {

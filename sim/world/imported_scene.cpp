@@ -119,7 +119,7 @@ void Pass(Io& io, MeshImport& import) {
   PassAll(io, scene.nodes, scene.meshes, scene.materials, scene.pictures);
 }
 
-// Of indices and lengths, so that a loader may take them as they are.
+// Whether all indices and lengths are valid, so that a loader need not check them.
 bool IsWhole(const ImportedScene& scene) {
   const auto fits = [](const auto& values, const ImportedMesh& mesh) {
     return values.empty() || values.size() == mesh.positions.size();

@@ -1,4 +1,4 @@
-// What a mesh file holds, from its reader in the importer's process to the loader. Private to sim/world.
+// Content of a mesh file, sent from its reader in the importer's process to the loader. Private to sim/world.
 #pragma once
 
 #include <array>
@@ -84,7 +84,7 @@ struct ImportedScene {
 struct MeshImport {
   ImportedScene scene;
   std::string problem;                    // why there is none; empty: there is
-  std::set<std::filesystem::path> files;  // that the importer looked for
+  std::set<std::filesystem::path> files;  // that the importer tried to open
   std::set<std::string> missing;          // those that could not be opened, without their folder
   std::vector<std::string> warnings;
   glm::dvec3 origin{0.0};  // of the scene's coordinates, in the file's
@@ -100,7 +100,7 @@ struct MeshCounts {
 MeshCounts CountsOf(const ImportedScene& scene);
 
 std::vector<std::uint8_t> ToBytes(const MeshImport& import);
-// Throws std::runtime_error where the bytes end too early or name what is not there.
+// Throws std::runtime_error for truncated bytes and invalid indices.
 MeshImport ImportFromBytes(std::span<const std::uint8_t> bytes);
 
 }  // namespace sim

@@ -33,11 +33,11 @@ void Visit(V& v, Flicker& p) {
   v("phase", phase_rad, {Unit::angle, "at t = 0"});
   p.phase = phase_rad / (2 * std::numbers::pi);
 }
-// The factor in the mean over what is between t - width / 2 and t + width / 2; at one instant where width is 0.
+// The factor averaged over t - width / 2 ... t + width / 2; at one instant where width is 0.
 double FlickerFactor(const Flicker& flicker, double t_s, double width_s = 0.0);
 
-// The same radiance from everywhere, never occluded: adds albedo * radiance to every surface. It stands for the light
-// that bounces about where that is not computed, and is left out where it is (baked light).
+// The same radiance from everywhere, never occluded: adds albedo * radiance to every surface. An approximation of
+// indirect light; omitted where that is computed (baked light).
 struct AmbientLight {
   glm::dvec3 radiance{1.0};
 };
@@ -94,7 +94,7 @@ void Visit(V& v, RectLight& p) {
 
 using Light = std::variant<AmbientLight, SunLight, PointLight, RectLight>;
 
-// A light as what is lit by one of its points sees it.
+// A light as seen from the lit surface: one of its points.
 struct LightSource {
   enum class Kind { sun, point, rectangle } kind;
   glm::dvec3 place;      // towards a sun (unit), or where it is, in W

@@ -1,4 +1,4 @@
-// Material libraries (MTL) of OBJ files, and what both have in common: statements, one a line. Private to sim/world.
+// Material libraries (MTL) of OBJ files, and the statement syntax common to both: one a line. Private to sim/world.
 #pragma once
 
 #include <functional>
@@ -11,11 +11,11 @@
 
 namespace sim {
 
-// Calls with the first word, the rest without blanks about it, and the line's number; a line that ends in '\' goes on
-// in the next. Empty lines and comments are left out, as is a byte-order mark.
+// Calls with the first word, the rest without blanks about it, and the line's number; a line that ends in '\' continues
+// in the next. Empty lines, comments and a byte-order mark are skipped.
 void ForEachStatement(std::string_view text,
                       const std::function<void(std::string_view word, std::string_view rest, int line)>& call);
-// The next word, which is taken off `rest`; empty: none.
+// The next word, removed from `rest`; empty: none.
 std::string_view NextWord(std::string_view& rest);
 // ".5", "+1", "1e-3", "nan" too.
 std::optional<double> ToNumber(std::string_view text);

@@ -113,7 +113,7 @@ std::vector<std::array<unsigned, 3>> Triangulate(std::span<const glm::dvec3> cor
       });
       if (is_empty) ear = i;
     }
-    if (ear == left.size()) ear = 1;  // it crosses itself or has no area: as a fan
+    if (ear == left.size()) ear = 1;  // self-intersecting or without area: as a fan
     triangles.push_back({left[(ear + left.size() - 1) % left.size()], left[ear], left[(ear + 1) % left.size()]});
     left.erase(left.begin() + static_cast<std::ptrdiff_t>(ear));
   }

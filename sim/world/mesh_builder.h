@@ -12,7 +12,7 @@
 
 namespace sim {
 
-// What polygons name by index, and their corners: indices of position, texture coordinate, normal and colour; -1: none.
+// Arrays that polygons index, and their corners: indices of position, texture coordinate, normal and colour; -1: none.
 struct PolygonPools {
   std::vector<glm::dvec3> positions;
   std::vector<glm::vec2> uvs;
@@ -24,23 +24,23 @@ struct Polygons {
   std::vector<Corner> corners;
   std::vector<std::uint32_t> sizes;  // of each, in corners
 };
-// An index that is not in its pool, in words; empty: none.
+// Description of an index out of range; empty: none.
 std::string IndexProblem(const Polygons& polygons, const PolygonPools& pools);
-// Triangles with a vertex for each different corner, at positions less `origin`; of texture coordinates, normals and
-// colours those that the first corner has. Indices are good.
+// Triangles with a vertex for each distinct corner, at positions less `origin`; of texture coordinates, normals and
+// colours those that the first corner has. Indices must be valid.
 void AppendPolygons(const Polygons& polygons, const PolygonPools& pools, const glm::dvec3& origin, ImportedMesh& mesh);
 
 // Colours beyond 1 are taken as 0 ... 255, or as 0 ... 65535 where they go beyond that, with a warning.
 void ScaleColors(PolygonPools& pools, std::vector<std::string>& warnings);
 
-// One node that has all meshes.
+// One node that holds all meshes.
 ImportedNode NodeOfAll(const std::vector<ImportedMesh>& meshes);
 
 // Triangles of a polygon with any number of corners, convex or not: indices into them.
 // Source: G. H. Meisters, "Polygons have ears", Am. Math. Monthly 82 (1975), in the plane of the polygon's area vector.
 std::vector<std::array<unsigned, 3>> Triangulate(std::span<const glm::dvec3> corners);
 
-// What is subtracted from coordinates that floats would be too coarse for (UTM, say): 0, or near their middle.
+// Offset to subtract from coordinates too large for floats (UTM, for example): 0, or near their middle.
 glm::dvec3 OriginFor(std::span<const glm::dvec3> positions);
 
 }  // namespace sim

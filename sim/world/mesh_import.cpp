@@ -24,7 +24,7 @@
 // The address and the thread sanitizer reserve terabytes.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define VOBENCH_NO_MEMORY_LIMIT
-#elif defined(__has_feature)  // clang's way to ask
+#elif defined(__has_feature)  // clang's feature test
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define VOBENCH_NO_MEMORY_LIMIT
 #endif
@@ -43,7 +43,7 @@ constexpr bool kLimitMemory = true;
 #endif
 constexpr rlim_t kMemory = rlim_t{512} << 20, kMemoryPerByte = 64;
 
-// A soft limit, no higher than what the system allows.
+// Sets a soft limit, at most the system's.
 void Limit(__rlimit_resource what, rlim_t most) {
   rlimit limit{};
   if (getrlimit(what, &limit) != 0) return;
@@ -51,7 +51,7 @@ void Limit(__rlimit_resource what, rlim_t most) {
   setrlimit(what, &limit);
 }
 
-// Of the address space that is taken already, which is the parent's.
+// Address space in use, which is the parent's.
 rlim_t AddressSpace() {
   std::ifstream stream("/proc/self/statm");
   rlim_t pages = 0;
@@ -71,7 +71,7 @@ void SilenceProcess() {
   Limit(RLIMIT_CORE, 0);
 }
 
-constexpr std::chrono::seconds kPatience(600);  // of whoever waits: an importer that sleeps uses no processor
+constexpr std::chrono::seconds kPatience(600);  // of the waiting process: a sleeping importer uses no processor time
 
 std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
   MeshImport import;

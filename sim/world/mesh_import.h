@@ -18,17 +18,17 @@ namespace sim {
 bool IsAllowed(const std::filesystem::path& mesh, const std::vector<std::filesystem::path>& folders,
                const std::filesystem::path& file);
 
-// The files of a mesh as its reader may open them: regular files in the allowed folders, and nothing else. The calling
-// process has the limits of ImportMesh; each file that is opened widens them.
+// File access of a mesh reader: regular files in the allowed folders only. The calling process has the limits of
+// ImportMesh; each opened file raises them.
 class MeshFiles {
  public:
-  // import: gets the files that are looked for, and those that are missing.
+  // import: receives the names of the files looked for and of those missing.
   MeshFiles(std::filesystem::path mesh, const std::vector<std::filesystem::path>& folders, MeshImport& import);
 
   const std::filesystem::path& mesh() const { return mesh_; }
   const std::vector<std::filesystem::path>& folders() const { return folders_; }
   bool MayOpen(const std::filesystem::path& file) const;
-  // None where it may not, or cannot be opened.
+  // None where the file is not allowed or cannot be opened.
   std::optional<std::string> Read(const std::filesystem::path& file);
   void Opened(const std::filesystem::path& file, std::uint64_t bytes);
   void Missing(const std::filesystem::path& file);
@@ -41,8 +41,8 @@ class MeshFiles {
   std::uint64_t taken_;      // of the address space, before the first one [bytes]
 };
 
-// Time is the processor's: five seconds, and ten more for each MB of the files that are opened. Memory: 512 MiB, and 64
-// bytes for each of theirs. An importer that crashes or runs into a limit is a problem with the file like any other.
+// Limits: processor time, five seconds and ten more for each MB of the opened files; memory, 512 MiB and 64 bytes for
+// each of their bytes. An importer that crashes or exceeds a limit is a problem with the file like any other.
 // Throws std::runtime_error where no process can be started.
 // only_cameras: no mesh of a glTF file is read.
 MeshImport ImportMesh(const std::filesystem::path& file, const std::vector<std::filesystem::path>& folders,

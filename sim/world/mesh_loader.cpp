@@ -79,7 +79,7 @@ class FileReader {
   }
 
  private:
-  // By the scenario's: one for all, or some by name.
+  // Replaces materials by the scenario's: one for all, or some by name.
   void ReplaceMaterials(ImportedScene& scene) {
     const auto replace = [&](const MaterialDescription& by, const auto& is_replaced) {
       ImportedMaterial material;
@@ -135,7 +135,7 @@ class FileReader {
           return file_.Problem(label + "the colour of vertex " + std::to_string(out.colors.size()) + " is not finite");
         }
         out.colors.emplace_back(linear_of(c.r), linear_of(c.g), linear_of(c.b));
-        any_alpha = any_alpha || c.a != in.colors[0].a;  // where a file has none, assimp makes up one
+        any_alpha = any_alpha || c.a != in.colors[0].a;  // where a file has none, assimp adds one
       }
       if (any_alpha) file_.Warn(label, "the alpha of its vertex colours is not used");
     }
@@ -176,8 +176,8 @@ class FileReader {
     file_.scene.meshes.push_back(std::move(out));
   }
 
-  // Coordinates are floats: far from the origin they are coarse. Says so when the rounding is 1e-5 of the mesh's size,
-  // and refuses it at 1e-3.
+  // Coordinates are floats, which are coarse far from the origin. Warns when the rounding is 1e-5 of the mesh's size,
+  // and rejects it at 1e-3.
   bool CheckRounding(const std::string& label, const std::vector<glm::vec3>& positions, const char* remedy) {
     glm::vec3 low = positions[0], high = low;
     for (const glm::vec3& x : positions) low = glm::min(low, x), high = glm::max(high, x);

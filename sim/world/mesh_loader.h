@@ -14,10 +14,10 @@ namespace sim {
 // Indices of textures in the scene, by file (embedded ones: by file and their name in it); -1: unreadable.
 using TextureIndices = std::map<std::string, int>;
 
-// Warnings, each kind of them once with how often it occurred.
+// Warnings, grouped by kind, with the number of occurrences.
 class WarningList {
  public:
-  // who: whatever differs; what: the same words for all of a kind.
+  // who: the subject, which varies; what: the text common to a kind.
   void Add(const std::string& who, const std::string& what);
   // "who what", or "108 x what (first: who)", in order of their first occurrence.
   std::vector<std::string> Summed() const;
@@ -34,10 +34,10 @@ class WarningList {
 struct PictureJob {
   int texture;                    // in Scene::textures
   std::function<Texture()> load;  // throws std::exception
-  std::string problem, warning;   // what one of it begins with
+  std::string problem, warning;   // how its problem or warning begins
 };
 
-// What all files of a world share.
+// State shared by all files of a world.
 struct WorldLoading {
   Scene& scene;
   const std::vector<std::filesystem::path>& folders;        // WorldDescription::folders
@@ -49,11 +49,11 @@ struct WorldLoading {
   std::vector<PictureJob> pictures{};
 };
 
-// Decodes them; parallel in the caller's task arena.
+// Decodes the pictures; parallel in the caller's task arena.
 void LoadPictures(WorldLoading& loading);
 
 // Appends the file's meshes (with the transforms of its nodes and of `description`), and the materials and textures
-// that they use, to the scene; notes what is wrong, each problem with its file. The scene is of use only without one.
+// that they use, to the scene; notes every problem, with its file. The scene is valid only without problems.
 void AppendMeshFile(const MeshDescription& description, WorldLoading& loading);
 
 }  // namespace sim

@@ -64,7 +64,7 @@ MeshMaterial MeshMaterialReader::Read(const ImportedMaterial& in) {
     material.texture = ReadTexture(in, {in.opacity_map, "opacity ", Content::color, true, mask}, uvs);
   if (emission.r > 0 || emission.g > 0 || emission.b > 0) {
     material.emission_texture = ReadTexture(in, {in.emission_map, "emission "}, uvs);
-    if (file_.extension == ".ac") material.emission_texture = material.texture;  // AC3D: the texture is on all light
+    if (file_.extension == ".ac") material.emission_texture = material.texture;  // AC3D: it applies to all light
   }
   if (!file_.is_gltf && material.texture >= 0 && material.base_color == glm::vec3(0))
     file_.Warn("material '" + material.name + "': ", "a colour of 0 makes its picture black");
@@ -76,7 +76,7 @@ MeshMaterial MeshMaterialReader::Read(const ImportedMaterial& in) {
     material.gloss_texture = ReadTexture(in, {in.gloss_map, "metallic-roughness ", Content::numbers}, uvs);
   material.lacks_gloss_map = !file_.is_gltf && !in.gloss_map.picture.empty();
   if (in.has_bumps != 0) file_.Warn("material '" + in.name + "': ", "bump maps (heights) are not rendered");
-  if (in.unlit != 0) {  // radiance is the base colour, whatever shines on it
+  if (in.unlit != 0) {  // radiance is the base colour, without lighting
     material.emission = std::exchange(material.base_color, glm::vec3(0));
     material.emission_texture = material.texture;
     material.metallic = 0, material.roughness = 1;
@@ -89,7 +89,7 @@ MeshMaterial MeshMaterialReader::Read(const ImportedMaterial& in) {
   return result;
 }
 
-// glTF says what alpha is for. In all other formats the alpha of a picture cuts out.
+// Alpha modes are those of glTF. In all other formats the alpha of a picture cuts out.
 void MeshMaterialReader::ReadAlpha(const ImportedMaterial& in, sim::Material& material) {
   const std::string who = "material '" + material.name + "': ";
   if (in.alpha_mode.empty()) {
@@ -158,11 +158,11 @@ int MeshMaterialReader::TextureIndex(const ImportedMaterial& in, const Use& use)
                                                                     : "";
   const std::string mask_of = use.mask == nullptr ? "" : " * " + in.folder + "/" + use.mask->picture;
   const auto [entry, is_new] = file_.loading.textures.try_emplace(file.string() + kind + mask_of, -1);
-  if (!is_new) return entry->second;  // a bad one has been reported
+  if (!is_new) return entry->second;  // a bad one has been reported already
   std::string problem;
   const Source picture = Find(in, use.map, found, problem);
   if (!picture) return -1;
-  const bool is_mask = use.mask == &use.map;  // there is no picture but that of its opacity
+  const bool is_mask = use.mask == &use.map;  // only the picture of its opacity
   const bool has_mask = use.mask != nullptr && (is_mask || use.mask->picture != name);
   const Source mask = has_mask ? Find(in, *use.mask, FileOf(in, *use.mask), problem) : Source();
   if (has_mask && !mask) return -1;

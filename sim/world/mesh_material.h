@@ -14,15 +14,15 @@
 
 namespace sim {
 
-// A mesh file that is read, and where its content goes.
+// A mesh file and the destination of its content.
 struct MeshFile {
   std::filesystem::path path;
-  std::string extension;  // ".obj", say
+  std::string extension;  // for example ".obj"
   bool is_gltf;
   Scene& scene;
   WorldLoading& loading;
 
-  // who: what differs from file to file; what: the same for all of a kind.
+  // who: the subject, which varies; what: the text common to a kind.
   void Warn(const std::string& who, const std::string& what) const {
     loading.warnings.Add(path.string() + ": " + who, what);
   }
@@ -39,14 +39,14 @@ class MeshMaterialReader {
   MeshMaterialReader(const MeshFile& file, const ImportedScene& from)
       : file_(file), from_(from), materials_(from.materials.size()) {}
 
-  // Adds the file's material to the scene when it is asked for the first time.
+  // Adds the file's material to the scene at its first use.
   const MeshMaterial& Material(unsigned index);
 
  private:
   // A picture's use in a material.
   struct Use {
     const ImportedMap& map;
-    const char* what;  // "normal ", say
+    const char* what;  // for example "normal "
     Texture::Content content = Texture::Content::color;
     bool with_alpha = false;
     const ImportedMap* mask = nullptr;  // the picture of its opacity
@@ -58,7 +58,7 @@ class MeshMaterialReader {
   int TextureIndex(const ImportedMaterial& in, const Use& use);
   // Of a picture in the mesh file: the mesh's path and its name.
   TextureFile FileOf(const ImportedMaterial& in, const ImportedMap& map) const;
-  // What reads a picture, and what a problem with it begins with; empty: it is bad.
+  // Reader of a picture, and how a problem with it begins; empty: it is bad.
   using Source = std::function<ImportedPicture()>;
   Source Find(const ImportedMaterial& in, const ImportedMap& map, const TextureFile& found, std::string& problem);
 

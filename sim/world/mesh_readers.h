@@ -1,4 +1,4 @@
-// Readers of mesh files. What is wrong with a file: import.problem. Private to sim/world.
+// Readers of mesh files. Problems of a file go to import.problem. Private to sim/world.
 #pragma once
 
 #include <cstring>
@@ -19,8 +19,8 @@ void ReadObj(MeshFiles& files, MeshImport& import);
 // MeshLab (VCGlib) writes them, names of properties as MeshLab, Blender, Open3D and CloudCompare do.
 void ReadPly(MeshFiles& files, MeshImport& import);
 
-// glTF 2.0 (.gltf, .glb): the default scene as it stands, without animations. Throws OlderGltf for glTF 1.0. An
-// extension that the file requires and that is not known here is import.problem; one that it uses is a warning.
+// glTF 2.0 (.gltf, .glb): the default scene, without animations. Throws OlderGltf for glTF 1.0. An unsupported
+// extension is import.problem where the file requires it, and a warning where the file uses it.
 // Source: Khronos, "glTF 2.0 Specification"; KHR_texture_transform, KHR_materials_unlit,
 // KHR_materials_emissive_strength, KHR_materials_pbrSpecularGlossiness, KHR_mesh_quantization,
 // KHR_draco_mesh_compression, EXT_meshopt_compression, EXT_texture_webp, EXT_mesh_gpu_instancing.
@@ -28,10 +28,10 @@ void ReadGltf(MeshFiles& files, MeshImport& import);
 // Its cameras alone: no mesh is read.
 void ReadGltfCameras(MeshFiles& files, MeshImport& import);
 
-// All other formats. FBX is in its unit and its axes, which assimp (5.2) leaves to whoever reads.
+// All other formats. FBX is in its unit and its axes, which assimp (5.2) does not convert.
 void ReadByAssimp(MeshFiles& files, MeshImport& import);
 
-// The number of type T that lies there.
+// The number of type T at an address.
 template <class T>
 double NumberAt(const void* from) {
   T value{};

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostValues = 1 << 27;
 
-// Types of numbers by both names, and what 1 is written as in a colour.
+// Types of numbers by both names, and the value of 1 in a colour.
 struct Type {
   std::string_view name, sized_name;
   std::size_t bytes;
@@ -248,7 +248,7 @@ class PlyReader {
     return at->second;
   }
 
-  // Strips, each of which -1 ends.
+  // Triangle strips, each terminated by -1.
   void AppendStrips(const std::vector<double>& indices) {
     Polygons& part = parts_[{0, false}];
     std::size_t first = 0;

@@ -16,7 +16,7 @@ bool IsFinite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(
 
 bool IsLight(const glm::dvec3& v) { return IsFinite(v) && v.x >= 0 && v.y >= 0 && v.z >= 0; }
 
-// What is wrong with a light; empty: nothing.
+// Problem of a light; empty: none.
 struct LightProblem {
   std::string operator()(const AmbientLight& l) const { return Power(l.radiance, "radiance"); }
   std::string operator()(const SunLight& l) const {

@@ -20,7 +20,7 @@
 namespace sim {
 
 // Albedo = base_color * vertex colour * texture; radiance = emission * emission texture + reflected light; each where
-// present. Lambert, or, to a renderer that is asked for reflections, glTF's metallic-roughness model.
+// present. Lambertian, or, in a renderer with reflections, glTF's metallic-roughness model.
 struct Material {
   std::string name;
   glm::vec3 base_color{1.0f};  // linear
@@ -87,8 +87,8 @@ class SceneError : public std::runtime_error {
 // SceneError with all problems of the world at once: a mesh that is missing, corrupt, without triangles, or with a
 // coordinate that is not finite; a texture that is missing, truncated, not an image, or named by an absolute path or
 // one that leaves the mesh file's folder; a light that is not finite or has no direction. A textured material on a mesh
-// without texture coordinates is a warning; its base colour is used. Objects are without motion: whoever knows the
-// time that they are needed for makes it (sim/motion/trajectory.h).
+// without texture coordinates is a warning; its base colour is used. Objects have no motion yet: it is made for the
+// time span needed (sim/motion/trajectory.h).
 Scene LoadScene(const WorldDescription& description);
 
 }  // namespace sim

@@ -22,7 +22,7 @@
 namespace sim {
 namespace {
 
-// Not by OpenCV, which reads OpenEXR only where the environment asks for it. In OpenCV's order of colours.
+// Without OpenCV, which reads OpenEXR only where the environment enables it. In OpenCV's order of colours.
 cv::Mat ReadExr(const std::filesystem::path& path) {
   try {
     Imf::InputFile file(path.c_str());

@@ -23,7 +23,7 @@ struct Sky {
   glm::dvec3 Radiance(const glm::dvec3& direction) const;
 };
 
-// How a scenario describes one: a picture, or three colours.
+// Sky of a scenario: a picture, or three colours.
 struct SkyDescription {
   glm::dvec3 zenith{0.0}, horizon{0.0}, ground{0.0};
   std::filesystem::path file;  // empty: none. Radiance HDR or EXR (linear), or whatever else OpenCV reads (sRGB-coded)
@@ -46,7 +46,7 @@ void Visit(V& v, SkyDescription& p) {
   }
 }
 
-// Throws std::runtime_error naming the file when it cannot be read or holds what is not light (negative, not finite).
+// Throws std::runtime_error naming the file when it cannot be read or has negative or non-finite radiances.
 Sky LoadSky(const SkyDescription& description);
 
 }  // namespace sim

@@ -12,7 +12,7 @@
 namespace sim {
 namespace {
 
-// Not initialised, and in large pages where the system has them: 4 KiB each take longer to get than to fill.
+// Uninitialised memory, in large pages where available: pages of 4 KiB take longer to map than to fill.
 template <class T>
 std::shared_ptr<T[]> LargeArray(std::size_t count) {
   std::shared_ptr<T[]> values = std::make_shared_for_overwrite<T[]>(count);

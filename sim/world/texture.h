@@ -27,13 +27,12 @@ struct TextureLevel {
   }
 };
 
-// Texels are kept as the square roots of linear red, green, blue in 10 bits each (red lowest): at most 1/1023 * sqrt(c)
-// from the truth, which is a ninth to a half of the step of the 8-bit sRGB picture that they come from, in 4 bytes.
-// Copies share them.
+// Texels are kept as the square roots of linear red, green, blue in 10 bits each (red lowest), 4 bytes: an error of at
+// most 1/1023 * sqrt(c), a ninth to a half of the step of the 8-bit sRGB picture. Copies share them.
 // Texture coordinates: (0, 0) is the upper left corner of the picture, (1, 1) the lower right; the centre of texel (i,
 // j) is at ((i + 0.5) / width, (j + 0.5) / height). The picture repeats outside.
 //
-// Texels of pictures that are no colours (normal maps, roughness) are not roots but the bytes' own values in 10 bits,
+// Texels of pictures other than colours (normal maps, roughness) are the bytes' own values in 10 bits instead of roots,
 // and the levels are means of those.
 class Texture {
  public:
@@ -44,7 +43,7 @@ class Texture {
   // std::invalid_argument when a size is wrong.
   Texture(std::string name, int width, int height, std::span<const std::uint8_t> rgb,
           std::span<const std::uint8_t> alpha = {}, Content content = Content::color);
-  // As another one was kept: `read` fills the bytes of texels() and then those of alpha(), in two calls.
+  // A texture from the cache: `read` fills the bytes of texels() and then those of alpha(), in two calls.
   Texture(std::string name, int width, int height, Content content, bool has_alpha,
           const std::function<void(void* to, std::size_t size)>& read);
 

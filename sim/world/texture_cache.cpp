@@ -17,8 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kVersion = 1;  // of the file and of the computation: another number, another name
-constexpr std::size_t kLeastTexels = std::size_t{1} << 18;  // smaller ones are decoded as fast as they are read
+constexpr std::uint64_t kVersion = 1;  // of the file and of the computation; part of the file's name
+constexpr std::size_t kLeastTexels = std::size_t{1} << 18;  // smaller ones are decoded as fast as read
 
 // All of 4 bytes.
 struct Head {
@@ -29,7 +29,7 @@ struct Head {
 static_assert(sizeof(Head) == 48);
 constexpr char kMagic[16] = "vobench texture";
 
-// XXH3 with 128 bits (Collet), each picture's seeded by what comes before it: not against malice.
+// 128-bit XXH3 (Collet), not cryptographic; each picture's hash is seeded by the preceding ones.
 XXH128_hash_t HashOf(std::span<const ImportedPicture> from, std::uint64_t use) {
   XXH128_hash_t hash = XXH3_128bits_withSeed(&use, sizeof use, kVersion);
   for (const ImportedPicture& picture : from)
@@ -102,7 +102,7 @@ Texture CachedTexture(const std::string& name, std::span<const ImportedPicture> 
     try {
       Write(folder / file, hash, texture);
       break;
-    } catch (const std::runtime_error&) {  // the next folder; the light's cache says where none can be written
+    } catch (const std::runtime_error&) {  // the next folder; the light's cache reports folders that cannot be written
     }
   }
   return texture;

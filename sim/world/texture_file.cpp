@@ -24,8 +24,8 @@ std::string Plain(std::string text) {
   return text.substr(0, last == std::string::npos ? 0 : last + 1);
 }
 
-// The file, or one beside it whose name differs in capitals only; of any kind: a picture of another format will do, as
-// Quake's engines have it.
+// The file, or one beside it whose name differs in capitals only; of any kind: a picture of another format is accepted,
+// as in Quake's engines.
 std::optional<fs::path> Existing(const fs::path& file, bool of_any_kind = false) {
   std::error_code error;
   if (fs::exists(file, error)) return file;

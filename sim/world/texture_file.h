@@ -1,5 +1,5 @@
-// The file of a texture, or of a material library, from what a mesh calls it: paths of any system, in any folder that
-// may be read. Private to sim/world.
+// File of a texture or material library from its name in a mesh file: paths of any system, in any folder that may be
+// read. Private to sim/world.
 #pragma once
 
 #include <filesystem>
@@ -21,7 +21,7 @@ struct TextureFile {
 };
 
 // name: relative to `folder` (itself relative to the mesh's) or to the mesh's folder; with '/' or '\', percent-encoded
-// or not. What is not there is looked for by its last part beside the mesh and in `folders`.
+// or not. A missing file is searched by the last part of its name beside the mesh and in `folders`.
 TextureFile FindTexture(const std::string& name, const std::filesystem::path& mesh, const std::string& folder,
                         const std::vector<std::filesystem::path>& folders);
 

@@ -46,7 +46,7 @@ void Cut(Mesh& mesh, int axis, float at) {
     const glm::uvec3 t = mesh.triangles[i];
     const int sides[3] = {side(t[0]), side(t[1]), side(t[2])};
     if (std::max({sides[0], sides[1], sides[2]}) <= 0 || std::min({sides[0], sides[1], sides[2]}) >= 0) continue;
-    // The corner that is alone on its side of the line, or on the line.
+    // The corner that is the only one on its side of the line, or on the line.
     int alone = 0;
     for (int k = 0; k < 3; ++k) {
       const int next = sides[(k + 1) % 3], last = sides[(k + 2) % 3];

@@ -50,7 +50,7 @@ pid_t ForkTied(int signal) {
   const pid_t parent = getpid(), child = fork();
   if (child != 0) return child;
   prctl(PR_SET_PDEATHSIG, signal);
-  if (getppid() != parent) _exit(1);  // it has ended before
+  if (getppid() != parent) _exit(1);  // the parent has already ended
   return child;
 }
 

@@ -52,7 +52,7 @@ class ChildProcess {
   // Throws std::system_error when no process can be started.
   explicit ChildProcess(const std::function<int(int answer)>& work);
 
-  // What the child, and those that inherit its pipe, write until all of them have closed it; none at `until`.
+  // Output of the child, and of those that inherit its pipe, until all of them have closed it; none at `until`.
   std::optional<std::string> ReadAnswer(SteadyTime until = SteadyTime::max()) const;
 
   void Kill() const { kill(pid_, SIGKILL); }

@@ -20,12 +20,12 @@ constexpr std::size_t kBufferBytes = 1 << 20;
   throw std::runtime_error(path.string() + ": " + what + ": " + error.message());
 }
 
-// 0: no error.
+// Throws for an errno; 0: no error.
 void RequireWritten(const fs::path& path, int error) {
   if (error != 0) Fail(path, "cannot be written", {error, std::generic_category()});
 }
 
-// `shown` is the path in errors.
+// `shown`: path in error messages.
 Descriptor OpenToWrite(const fs::path& path, int flags, const fs::path& shown) {
   Descriptor file(Uninterrupted([&] { return open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666); }));
   if (!file) RequireWritten(shown, errno);
@@ -145,7 +145,7 @@ AtomicFolder::AtomicFolder(fs::path folder) : final_(std::move(folder)) {
   }
   std::error_code error;
   fs::create_directories(final_.parent_path(), error);
-  // The folder of a killed process of the same number is not taken over.
+  // The folder of a killed process of the same number is not reused.
   const std::string name = "." + final_.filename().string() + ".partial";
   for (int n = 0; !error; ++n) {
     temporary_ = final_.parent_path() / (name + std::to_string(n) + "-" + std::to_string(getpid()));

@@ -35,7 +35,7 @@ std::optional<std::size_t> RoleOf(const std::string& name) {
   return is_position ? std::optional(1 + axis) : std::nullopt;
 }
 
-// What is wrong with a file, by its first row; empty: nothing.
+// Problem of a file, by its first row; empty: none.
 std::string OtherKind(std::string_view line, const std::vector<Word>& words, const std::string& stamp) {
   const std::string first(words[0].text);
   const std::size_t comma = line.find(',', 1);
@@ -98,7 +98,7 @@ std::string PoseTable::Stamp(const Word& word) const {
 void PoseTable::ReadHeader(std::string_view line) {
   const std::vector<std::string> names = Names(line);
   std::array<std::optional<std::size_t>, kPose> found;
-  bool has_stamp = false;  // rather than the time of its arrival
+  bool has_stamp = false;  // instead of the time of its arrival
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::optional<std::size_t> role = RoleOf(names[i]);
     if (!role) continue;

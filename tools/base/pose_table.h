@@ -15,11 +15,12 @@ namespace base {
 
 class PoseTable {
  public:
-  // is_euroc: whole stamps are nanoseconds and qw comes first, where no header says otherwise.
+  // is_euroc: whole stamps are nanoseconds and qw comes first, unless a header differs.
   explicit PoseTable(bool is_euroc = false) : is_euroc_(is_euroc) {}
 
   // The words `timestamp tx ty tz qx qy qz qw` of the next line, in this order; none of a line without a pose (empty, a
-  // comment, a header). A row of another length comes as it is. problem: where the first row shows another kind of file.
+  // comment, a header). A row of another length is returned unchanged. problem: where the first row shows another kind
+  // of file.
   std::vector<Word> Row(std::string_view line, std::string& problem);
   // Of a row's first word, in seconds.
   std::string Stamp(const Word& word) const;

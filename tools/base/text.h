@@ -11,7 +11,7 @@ namespace base {
 
 std::string Join(const std::vector<std::string>& parts, std::string_view separator);
 
-// Of the problems of a file the first 50, one a line, and how many more there are.
+// The first 50 problems of a file, one a line, and the number of the others.
 std::string JoinProblems(std::vector<std::string> problems);
 
 // A part of a line, and where it begins (1: the first character).
@@ -22,14 +22,14 @@ struct Word {
 // Of a line of numbers or names, as programs write tables: separated by blanks, tabs, commas or semicolons.
 std::vector<Word> SplitWords(std::string_view line);
 
-// Without the byte-order mark of UTF-8 at its beginning, which editors on Windows write.
+// Text without UTF-8's byte-order mark at its beginning, which editors on Windows write.
 inline std::string_view WithoutMark(std::string_view text) {
   constexpr std::string_view kMark = "\xef\xbb\xbf";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
 }
 
-// Why the beginning of a file is no text in lines that can be read here (UTF-16, other bytes than text's, lines that end
-// in CR alone); empty: it is one.
+// Why the beginning of a file is not text in readable lines (UTF-16, other bytes than text's, lines that end in CR
+// alone); empty: it is text.
 std::string TextProblem(std::string_view head);
 // A line that holds no data: '#', '%' or '//' begin it.
 inline bool IsComment(std::string_view first_word) {
@@ -48,8 +48,8 @@ std::optional<double> ParseNumber(std::string_view text);
 // Bound on a stamp's distance from zero: sums and differences of two stamps fit into 64 bits.
 constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;
 
-// Decimal seconds to nanoseconds, exact: no double between, a tenth decimal is rounded. Signs and exponents are
-// understood. None for other text and beyond kLatest_ns.
+// Decimal seconds to nanoseconds, exact: not by way of a double, a tenth decimal is rounded. Signs and exponents are
+// accepted. None for other text and beyond kLatest_ns.
 std::optional<std::int64_t> ParseSeconds(std::string_view text);
 // Whether a number beyond kLatest_ns counts milli-, micro- or nanoseconds, in words that follow "is not a time in
 // seconds"; empty for other text.

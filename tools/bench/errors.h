@@ -1,5 +1,5 @@
-// Exceptions by exit status: BadInput is a mistake of the caller (2), NotConsistent a verdict that was required to be
-// another (3); every other exception means that the work failed (1).
+// Exceptions by exit status: BadInput is a mistake of the caller (2), NotConsistent an inconsistent system where
+// consistency was required (3); every other exception means that the work failed (1).
 #pragma once
 
 #include <filesystem>
@@ -20,12 +20,12 @@ struct NotConsistent : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The work was stopped by a signal (exit 1); the message says what was kept.
+// The work was stopped by a signal (exit 1); the message states what was kept.
 struct Interrupted : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// "PATH: why", which the standard library writes the other way round, with its function's name; else the error's words.
+// Message of an exception; "PATH: why" for file system errors, which the standard library orders differently.
 inline std::string WordsOf(const std::exception& error) {
   const auto* of_file = dynamic_cast<const std::filesystem::filesystem_error*>(&error);
   if (of_file == nullptr) return error.what();
@@ -33,7 +33,7 @@ inline std::string WordsOf(const std::exception& error) {
   return of_file->path1().string() + to + ": " + of_file->code().message();
 }
 
-// Reads an input: whatever goes wrong in there is the input's fault. The libraries' messages name file, line and value.
+// Reads an input: exceptions in there become BadInput. The libraries' messages name file, line and value.
 template <class Function>
 auto Input(Function&& read) {
   try {

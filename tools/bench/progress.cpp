@@ -25,7 +25,7 @@ sigset_t Signals() { return base::SignalSet({SIGINT, SIGTERM, SIGHUP}); }
 void HoldInterrupts() {
   const sigset_t signals = Signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  // A pipe that was closed (`vobench ... | head`) is an error of the write, not the end of the program.
+  // Writing to a closed pipe (`vobench ... | head`) is an error, not the end of the program.
   signal(SIGPIPE, SIG_IGN);
 }
 
@@ -60,7 +60,7 @@ void Progress::Step(std::int64_t count) {
   done_ += count;
   const auto now = std::chrono::steady_clock::now();
   const bool is_time = terminal_ ? now - drawn_ >= kRedraw : now - drawn_ >= kPlainLine;
-  const bool is_beyond = terminal_ && total_ > 0 && done_ > total_;  // no step is known to be the last
+  const bool is_beyond = terminal_ && total_ > 0 && done_ > total_;  // the last step is unknown
   if (done_ == total_ || is_beyond || is_time) {
     drawn_ = now;
     Draw();

@@ -1,5 +1,5 @@
-// Long work: progress on stderr, a bar with the remaining time on a terminal and plain lines otherwise; and Ctrl-C,
-// noticed between two steps, so that destructors run and nothing half-written stays.
+// Progress of long work on stderr, a bar with the remaining time on a terminal and plain lines otherwise; and Ctrl-C,
+// handled between two steps, so that destructors run and no incomplete file stays.
 #pragma once
 
 #include <chrono>
@@ -8,21 +8,21 @@
 
 namespace vobench {
 
-// From now on SIGINT, SIGTERM and SIGHUP wait to be asked for. Call once, before any thread starts: threads inherit it.
+// Blocks SIGINT, SIGTERM and SIGHUP until they are polled. Call once, before any thread starts: threads inherit it.
 void HoldInterrupts();
-// Whether one of them waits.
+// Whether one of them is pending.
 bool InterruptPending();
 
 class Progress {
  public:
-  // `done` of the total were done before; a total of 0 is not known, and one that a video file says may be too small.
+  // `done` of the total were done earlier; a total of 0 is unknown, and the one of a video file may be too small.
   Progress(std::string what, std::int64_t total, std::int64_t done = 0, std::string unit = "frames");
   ~Progress();  // ends the bar's line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  // So many more of the total are done, at least one. Throws Interrupted when Ctrl-C or a request to end has arrived,
-  // but not where the total is unknown: there that is how the work ends, and the caller calls InterruptPending.
+  // Advances by `count`, at least one. Throws Interrupted after Ctrl-C or another termination signal, but not where the
+  // total is unknown: there the signal is the normal end of the work, and the caller calls InterruptPending.
   void Step(std::int64_t count = 1);
 
  private:

@@ -1,4 +1,4 @@
-// Provenance of a result: when it began, how long it took, and which versions made it.
+// Provenance of a result: start time, duration, and versions of the software.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@
 
 namespace vobench {
 
-// Time since it was made, and when that was.
+// Time since construction, and the time of construction.
 class Clock {
  public:
   double seconds() const;

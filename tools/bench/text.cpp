@@ -12,7 +12,7 @@
 namespace vobench {
 namespace {
 
-// Characters as a terminal shows them: bytes that continue a UTF-8 character take no room.
+// Width in characters: bytes that continue a UTF-8 character have none.
 std::size_t Width(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));

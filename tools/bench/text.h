@@ -19,7 +19,7 @@ std::string Readable(double value);
 // 0.987 as "98.7 %"; "–" for what is not a number.
 std::string Percent(double share, int decimals = 1);
 
-// How the system is called in writing: "rb2pf" is RB²-PF. Unknown names as they are.
+// Name of a system in text: "rb2pf" is RB²-PF. Unknown names are unchanged.
 std::string DisplayName(const std::string& system);
 
 // "1 run", "3 runs".

@@ -20,7 +20,7 @@ PointEstimate ToPointEstimate(const vo::Estimate& e) {
   return {e.pose.p_WC, e.pose.q_WC, e.v_WC, e.w_WC_C, e.covariance};
 }
 
-// An object of Python that threads without Python may let go of.
+// Owner of a Python object that may be released by threads without the interpreter lock.
 std::shared_ptr<py::object> Keep(py::object object) {
   return {new py::object(std::move(object)), [](py::object* kept) {
             const py::gil_scoped_acquire locked;
@@ -64,7 +64,7 @@ PointPlay PlayWorld(PointWorld& world, const py::object& filter) {
   return Play(world.world, tracked);
 }
 
-// Estimates made elsewhere, each with the truth of its time.
+// Estimates from another program, each with the truth of its time.
 PointPlay Together(const std::vector<vo::Estimate>& estimates, const std::vector<StampedTruth>& truths) {
   if (estimates.size() != truths.size()) {
     throw std::invalid_argument(std::to_string(estimates.size()) + " estimates, but " + std::to_string(truths.size()) +

@@ -20,7 +20,7 @@ std::int64_t Checked(std::int64_t index, std::int64_t count) {
   return index;
 }
 
-// A view of numbers that `owner` holds: they live as long as the view does.
+// View of numbers in the memory of `owner`, which lives as long as the view.
 template <class T>
 py::array ViewOf(const T* first, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides, py::handle owner) {
   return py::array(py::dtype::of<T>(), std::move(shape), std::move(strides), first, owner);

@@ -22,18 +22,17 @@ namespace vobench::python {
 
 namespace py = pybind11;
 
-// "sim/simulator.h:Simulator::Render": the comment of that declaration; "sim/simulator.h:": the header's purpose. What
-// there is, docstrings.py reads from the headers when the module is built. Throws std::logic_error for a key that there
-// is none of.
+// "sim/simulator.h:Simulator::Render": the comment of that declaration; "sim/simulator.h:": the header's purpose.
+// docstrings.py collects them from the headers when the module is built. Throws std::logic_error for an unknown key.
 const char* Doc(const std::string& key);
 
-// Work during which Python may do something else.
+// Work that runs without Python's interpreter lock.
 using Unlocked = py::call_guard<py::gil_scoped_release>;
 
-// A scenario with its odometry: and prior: sections; what is made of it keeps it.
+// A scenario with its odometry: and prior: sections, shared by the objects made from it.
 using Scenario = std::shared_ptr<Experiment>;
 
-// What the judge knows of a frame.
+// Ground truth of a frame.
 struct StampedTruth {
   std::int64_t stamp_ns = 0;
   sim::Truth truth;
@@ -54,13 +53,13 @@ struct Trajectory {
   evaluation::Trajectory poses;
 };
 
-// Of (x, y, z, w). Throws std::invalid_argument where it is no rotation.
+// Of (x, y, z, w). Throws std::invalid_argument where it is not a rotation.
 Eigen::Quaterniond Rotation(const Eigen::Vector4d& xyzw);
 
 // {"filter.particles": 16} as overrides, with a prefix before each key.
 Overrides OverridesOf(const py::dict& settings, const std::string& prefix = "");
 
-// The source's next frame, while Python may do something else; ends Python's iteration after the last.
+// The source's next frame, without the interpreter lock; ends Python's iteration after the last.
 template <class Source>
 auto NextOf(Source& source) {
   auto frame = [&] {

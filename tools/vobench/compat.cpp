@@ -18,7 +18,7 @@
 namespace vobench {
 namespace {
 
-using namespace evaluation::compat;  // NOLINT(google-build-using-namespace): all of it is what this file is about
+using namespace evaluation::compat;  // the file's subject
 using evaluation::Trajectory;
 
 constexpr const char* kTools =

@@ -1,5 +1,5 @@
-// --help of the option table, for a terminal of 24 lines and 100 columns. The man page and bash's completion are made of
-// it (docs/install.md).
+// --help of the option table, for a terminal of 24 lines and 100 columns. Source of the man page and of bash's
+// completion (docs/install.md).
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct OptionRow {
 // In the order of the table; the positional first, --help last.
 std::vector<OptionRow> RowsOf(const CLI::App& command);
 std::vector<const CLI::App*> CommandsOf(const CLI::App& app);
-// "vobench render [OPTIONS] SCENARIO -o SEQ": what must be given.
+// "vobench render [OPTIONS] SCENARIO -o SEQ": the required arguments.
 std::string Usage(const CLI::App& command);
 
 std::string HelpText(const CLI::App& command);

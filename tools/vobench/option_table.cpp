@@ -210,7 +210,7 @@ void AddRun(OptionTable& table) {
   AddSet(command, run.overrides, "odometry.filter.particles=16");
 }
 
-// Where the tasks of a campaign run, and what they may use. Returns --engine.
+// Engine of a campaign's tasks, and its resources. Returns --engine.
 CLI::Option* AddPlace(CLI::App& command, CampaignOptions& campaign) {
   CLI::Option* where = Add(command, "--engine NAME", campaign.engine, "Where tasks run: local or slurm")
                            ->check(CLI::IsMember({"local", "slurm"}))
@@ -347,7 +347,7 @@ void AddReport(OptionTable& table) {
   Add(command, "OUT", report.output, "Result folder")->required();
 }
 
-// As it could be typed again.
+// The command line, quoted for reuse.
 std::string CommandLine(int argc, char** argv) {
   std::string line = "vobench";
   for (int i = 1; i < argc; ++i) {

@@ -1,5 +1,5 @@
-// Command line: every sub-command with its options, once: what is parsed, and what --help says of it. Defaults are those
-// of the option structs.
+// Option table of the command line: every sub-command with its options and their --help. Defaults are those of the
+// option structs.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
-// What of the machine may differ while the bits stay: instruction sets of inner loops, with dispatch at run time, and the
-// block sizes of matrix products.
+// Machine-dependent choices that leave results bit-identical: instruction sets of inner loops, with dispatch at run
+// time, and the block sizes of matrix products.
 #pragma once
 
 #include <vector>
@@ -13,8 +13,8 @@ std::vector<InstructionSet> AvailableInstructionSets();
 // The last of them, determined once.
 InstructionSet BestInstructionSet();
 
-// Makes Eigen cut products of large matrices alike on every machine: by itself it does so by the caches it finds, and
-// sums then have another order. Once for the process.
+// Fixes Eigen's blocking of large matrix products on every machine: its default depends on the caches, which changes
+// the order of sums. Once for the process.
 void FixBlocksOfProducts();
 
 }  // namespace vo

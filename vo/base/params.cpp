@@ -36,7 +36,7 @@ std::vector<settings::FieldProblem> Problems(Params params) {
                 features.search_relocalise_px, "must not be below features.search_uncertain");
 
   const TargetParams& target = params.target;
-  if (target.columns != 0 || target.rows != 0) {  // findChessboardCornersSB asks for three
+  if (target.columns != 0 || target.rows != 0) {  // the minimum of findChessboardCornersSB
     check.Require(target.columns >= 3, "target.columns", target.columns, "must be 3 or more, or 0 with target.rows 0");
     check.Require(target.rows >= 3, "target.rows", target.rows, "must be 3 or more, or 0 with target.columns 0");
     check.Require(target.square_m > 0, "target.square", target.square_m, "must be positive");

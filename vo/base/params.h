@@ -1,5 +1,6 @@
 // Settings of the odometry: one struct per component, with its field table (key in `odometry:`, unit, range, meaning).
-// Defaults are those of docs/algorithm.md, section 10; the paper's (Section V-A) are systems rb2pf_paper and rbpf_paper.
+// Defaults are those of docs/algorithm.md, section 10; the paper's (Section V-A) are systems rb2pf_paper and
+// rbpf_paper.
 #pragma once
 
 #include <numbers>
@@ -55,7 +56,7 @@ enum class Weight {
 };
 
 struct FilterParams {
-  Sampled sampled = Sampled::pose;  // no key: it is what tells the systems apart
+  Sampled sampled = Sampled::pose;  // no key: it distinguishes the systems
   Proposal proposal = Proposal::iterated;
   int particles = 16;
   double resample_below = 0.5;
@@ -99,7 +100,7 @@ struct LandmarkParams {
   double inverse_depth = 0.25;        // [1/m]
   double inverse_depth_sigma = 0.15;  // [1/m]
   double scale_sigma = 0.5;
-  double permanent_ratio = 0.05;  // our choice; the paper gives no number
+  double permanent_ratio = 0.05;  // our choice; not given in the paper
   int proving_matches = 5;
   int forget_after = 90;
   int max_landmarks = 1000;
@@ -159,7 +160,7 @@ enum class BriskWarp {
 // Covariance of a match's error.
 enum class MatchNoise {
   constant,    // sigma_px for all
-  registered,  // of a registered match: sigma_floor_px, and the registration's least-squares covariance * noise_inflation
+  registered,  // registered match: sigma_floor_px, and the registration's least-squares covariance * noise_inflation
   adaptive,    // the same and a random walk, times a factor from each landmark's own residuals
 };
 
@@ -258,7 +259,7 @@ void Visit(V& v, TargetParams& p) {
   v("frames", p.frames, {Range::AtLeast(1), "first frames in which it is searched"});
 }
 
-// What is estimated of the camera itself.
+// Estimated camera parameters.
 struct CalibrationParams {
   bool estimate = true;
 };
@@ -290,7 +291,7 @@ void Visit(V& v, Params& p) {
   v.Child("calibration", p.calibration);
 }
 
-// Ranges and the rules between several values; empty when all is well. Keys are those of `odometry:`.
+// Ranges and the rules between several values; empty if valid. Keys are those of `odometry:`.
 std::vector<settings::FieldProblem> Problems(Params params);
 
 }  // namespace vo

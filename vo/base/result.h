@@ -20,10 +20,10 @@ struct Prior {
   Matrix6 velocity_covariance = Matrix6::Identity() * 0.25;
 };
 
-// Numerical events of one frame, where the filter did what its equations do not say: counts over all particles.
+// Numerical events of one frame, departures of the filter from its equations: counts over all particles.
 struct NumericalEvents {
   int not_converged = 0;  // minimisations that ended by their number of iterations
-  int behind_camera = 0;  // matches that an update left out, because their landmark had come to lie behind the camera
+  int behind_camera = 0;  // matches left out of an update, because their landmark was behind the camera
   // Matrices without a Cholesky factor: the particle's evidence is not a number then.
   int not_positive_definite = 0;
   // Particles whose evidence was not a number: each became a copy of the heaviest, with half of its weight.
@@ -49,11 +49,11 @@ struct FrameDiagnostics {
   double effective_particles = 0;  // before resampling
   // Time of frame preparation and corner detection; of the search; of the rest
   double ms_features = 0, ms_matching = 0, ms_filter = 0;
-  NumericalEvents events;  // where the filter did what its equations do not say
+  NumericalEvents events;  // departures of the filter from its equations
   int repeated = 0;        // predictions made again in this frame and kept
   static constexpr int kTrackedMatches = 10;
   static constexpr double kTrackedAgreement = 0.4;
-  // The frame shows what was predicted: enough landmarks match, enough of the searched do, at the first prediction.
+  // Whether the frame agrees with its prediction: enough matches, and enough of the searched, at the first prediction.
   bool tracked() const {
     return matched >= kTrackedMatches && matched >= kTrackedAgreement * searched && repeated == 0;
   }

@@ -34,8 +34,8 @@ class FrameMotion {
   std::vector<double> times_;
 };
 
-// The times of a camera with a regular clock whose stamps jitter: multiples of the mean period. As they are where a
-// step is not near a multiple of the median one.
+// The times of a camera with a regular clock whose stamps jitter: multiples of the mean period. Unchanged where a step
+// is not near a multiple of the median one.
 std::vector<double> RegularTimes(std::vector<double> times);
 
 }  // namespace vo

@@ -7,12 +7,12 @@
 namespace vo {
 namespace {
 
-// Of a period between frames: of a shorter readout the filter's velocity, which is that between frames, corrects no more
-// than it spoils.
+// Of a period between frames: for a shorter readout the correction by the filter's velocity, which is that between
+// frames, is no more accurate than none.
 constexpr double kLeastReadout = 0.15;
-constexpr double kLeastChange = 0.002;  // [s] of a readout time that is in use: less does no harm
+constexpr double kLeastChange = 0.002;  // [s] smaller changes of a readout time in use are negligible
 constexpr double kSignificant = 3;      // [sigma]
-// A window of a larger standard deviation says nothing.
+// Windows of a larger standard deviation are ignored.
 constexpr double kWideReadout = 0.005, kWideFocal = 0.05;
 
 }  // namespace
@@ -65,7 +65,7 @@ bool SelfCalibration::Add(std::int64_t stamp_ns, const Pose& pose, std::span<con
   return completed;
 }
 
-// Whether there was one.
+// Returns whether there was one.
 bool SelfCalibration::EndFit() {
   if (!fitting_) return false;
   const std::optional<WindowFit> fit = std::exchange(fitting_, std::nullopt)->AllRounds();

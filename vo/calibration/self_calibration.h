@@ -1,5 +1,5 @@
-// Calibration checked while the odometry runs, from the tracks of the first windows of frames: the shutter's readout
-// time, where nobody states it, and the focal length.
+// Self-calibration during the odometry, from the tracks of the first windows of frames: the shutter's readout time,
+// where it is not stated, and the focal length.
 // Source:  docs/calibration.md.
 #pragma once
 
@@ -15,12 +15,12 @@
 namespace vo {
 
 struct CalibrationEstimate {
-  std::optional<Measured> readout_s;     // none: stated, or nothing is known of it
+  std::optional<Measured> readout_s;     // none: stated, or unknown
   double readout_used_s = 0;             // at the end
-  std::optional<Measured> focal_factor;  // that the matches prefer, on the stated focal length
+  std::optional<Measured> focal_factor;  // estimated factor on the stated focal length
   double pattern_px = 0;  // rms residual at the stated focal length that neither poses nor landmarks absorb
 
-  // By more than kWrongFocal, with 97.5 % confidence.
+  // Whether the focal length is wrong by more than kWrongFocal, with 97.5 % confidence.
   bool focal_is_wrong() const;
 };
 
@@ -37,9 +37,10 @@ class SelfCalibration {
   SelfCalibration(const Camera& camera, std::optional<double> readout_s)
       : camera_(camera), stated_(readout_s), readout_s_(readout_s.value_or(0)) {}
 
-  // Whether the frames so far may have to be tracked again: the readout time is not known yet.
+  // Whether the frames so far may have to be tracked again: the readout time is not estimated yet.
   bool starting() const { return !stated_ && readouts_.empty() && windows_ < kStartWindows; }
-  // A frame and its answer. True where it completes the fit of a window: at once while starting, else a round a frame.
+  // A frame and its answer. True where it completes the fit of a window: at once while starting, else one round a
+  // frame.
   bool Add(std::int64_t stamp_ns, const Pose& pose, std::span<const FeatureView> features);
   // The readout time from now on, where it differs significantly from that in use.
   std::optional<double> ChangeReadout();
@@ -53,7 +54,7 @@ class SelfCalibration {
 
   static constexpr std::size_t kWindowFrames = 30;
   static constexpr int kStartWindows = 3, kMostWindows = 40;
-  static constexpr std::size_t kEnough = 8;  // windows that determine what is looked for
+  static constexpr std::size_t kEnough = 8;  // windows that determine a parameter
 
   Camera camera_;
   bool stated_;

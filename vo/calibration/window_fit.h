@@ -1,8 +1,9 @@
 // Readout time of the shutter and focal length by bundle adjustment of a window of frames: poses, landmarks and these
 // two together, so that neither poses nor map absorb them.
-// Source:  Hedborg, Forssén, Felsberg, Ringaby 2012, "Rolling shutter bundle adjustment"; each row's pose by FrameMotion.
-//          Covariance: sandwich estimate, with the scores summed over the matches of a landmark and of a frame
-//          (Cameron, Gelbach, Miller 2011, "Robust inference with multiway clustering"), since these share errors.
+// Source:  Hedborg, Forssén, Felsberg, Ringaby 2012, "Rolling shutter bundle adjustment"; each row's pose by
+//          FrameMotion. Covariance: sandwich estimate, with the scores summed over the matches of a landmark and of a
+//          frame (Cameron, Gelbach, Miller 2011, "Robust inference with multiway clustering"), since these share
+//          errors.
 // Units:   pixels, seconds; poses T_WC.
 #pragma once
 
@@ -37,10 +38,10 @@ struct Measured {
 struct WindowFit {
   Measured readout_s;  // sigma 0: not estimated
   Measured log_focal;  // of the factor on fx and fy
-  double px_of_focal;  // rms over the matches, per unit of log_focal: what neither poses nor landmarks absorb
+  double px_of_focal;  // rms over the matches, per unit of log_focal: the part not absorbed by poses and landmarks
 };
 
-// A fit in rounds, so that a frame need not wait for all of them.
+// A fit in rounds, spread over frames.
 class WindowFitting {
  public:
   // `readout_s`: first guess; `estimate_readout` false: known.

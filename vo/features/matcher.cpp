@@ -69,7 +69,7 @@ Descriptor DescriptorOf(Patch& patch, const BriskSampler& sampler) {
   return image.Describe({Patch::kRadius, Patch::kRadius}, sampler);
 }
 
-// First view blurred along `streak` [px of the present image]; none where it serves as it is.
+// First view blurred along `streak` [px of the present image]; none where the unblurred one is used.
 std::optional<Appearance> AtBlur(const SearchRequest& request, const Eigen::Vector2d& streak,
                                  const BriskSampler& sampler) {
   const std::optional<Patch> patch = BlurredInView(request.appearance->patch, request.warp, streak);
@@ -80,7 +80,7 @@ std::optional<Appearance> AtBlur(const SearchRequest& request, const Eigen::Vect
   return blurred;
 }
 
-// Covariance of a blurred match: its streak is neither uniform nor straight, and predicted.
+// Covariance of a blurred match: its streak is neither uniform nor straight, and is a prediction.
 Eigen::Matrix2d OfBlur(const Eigen::Vector2d& streak) { return kOfStreak * kOfStreak * streak * streak.transpose(); }
 
 bool OnBorder(const Eigen::Vector2i& pixel, const Eigen::Vector2i& centre, int side) {

@@ -1,4 +1,4 @@
-// Motion blur of two views of a patch, made equal for comparison.
+// Relative motion blur of two views of a patch, equalised for comparison.
 // Source:  docs/algorithm.md, section 7.4.
 // Units:   pixels.
 #pragma once

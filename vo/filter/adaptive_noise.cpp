@@ -6,14 +6,14 @@
 namespace vo {
 namespace {
 
-// Of the mean: most of it is shown by few frames, which are predicted again.
+// Of the mean, most of which is due to few frames, which are predicted again.
 constexpr double kTypical = 0.7;
 constexpr double kLeast = 1e-7;     // added in each frame
 constexpr double kIsotropic = 0.2;  // share of the shape: the rest has 21 unknowns and some 20 frames
 constexpr double kRate = 0.1;       // of the mean, per frame; more in the first frames
-constexpr double kMostOfOne = 20;   // that one frame counts for
+constexpr double kMostOfOne = 20;   // weight limit of one frame
 constexpr double kLeastWidening = 4;
-constexpr double kUnderstated = 2;  // innovation ratio of a frame that shows more noise than was assumed
+constexpr double kUnderstated = 2;  // innovation ratio above which a frame is predicted with more noise
 
 double Ratio(const Eigen::Vector3d& change, const Eigen::Matrix3d& gained) {
   return change.squaredNorm() / std::max(gained.trace(), std::numeric_limits<double>::min());
@@ -73,7 +73,7 @@ void AdaptiveNoise::Learn(const PoseGaussian& predicted, const PoseGaussian& upd
   const Vector6 d = R * Minus(updated.mean, predicted.mean);
   const Matrix6 T = Matrix6(S.llt().matrixL()) * Matrix6(P.llt().matrixL()).inverse();  // T P T' = S
   Matrix6 shown = S + T * (d * d.transpose() - gained) * T.transpose();
-  if (failed) shown = Isotropic(shown);  // one burst has a size, but one direction alone
+  if (failed) shown = Isotropic(shown);  // a single burst determines a size, but only one direction
   const double position = std::min(1.0, kMostOfOne * MeanOfBlock(density_, 0) / MeanOfBlock(shown, 0));
   const double orientation = std::min(1.0, kMostOfOne * MeanOfBlock(density_, 1) / MeanOfBlock(shown, 1));
   shown = Scaled(shown, position, orientation);

@@ -71,7 +71,7 @@ const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> matches) {
     const Pose s = proposal.pose.Sample(Key(Stream::pose, i));  // 4
     step_.ConditionMean(PathState(particle.pose), particle.velocity.mean, gain);
     const Eigen::Vector3d turn = PredictedTurn(step_, particle.pose, particle.velocity);
-    // A proposal that is blind to the image is no posterior: the answer is the weighted samples.
+    // The bootstrap proposal is not a posterior: the answer is the weighted samples.
     const bool blind = params.proposal == Proposal::bootstrap;
     answer_.mixture.push_back(
         Component(blind ? PoseGaussian{s, Matrix6::Zero()} : proposal.pose, particle.pose, turn, gain));

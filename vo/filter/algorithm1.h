@@ -14,7 +14,7 @@ namespace vo {
 class Algorithm1 final : public ParticlePhase {
  public:
   Algorithm1(const ParticleFilterSettings& settings, const FilterPrior& prior);
-  // Goes on with the particles of a finished phase, all of whose poses are sampled.
+  // Continues with the particles of a finished phase, all of whose poses are sampled.
   explicit Algorithm1(ParticlePhase&& finished);
 
   void Predict(double dt, const MotionInput& input = {}) override;
@@ -35,12 +35,12 @@ class Algorithm1 final : public ParticlePhase {
   void PredictParticles(const MotionInput& input);
   const FilterAnswer& Coast();
   const FilterAnswer& SampleStep(std::span<const Match> matches);
-  // (15)(16) by the proposal that the settings name (docs/algorithm.md, sections 3, 3a and 8). The prediction itself
-  // without matches, or for a proposal that is blind to the image.
+  // (15)(16) by the proposal of the settings (docs/algorithm.md, sections 3, 3a and 8). The prediction itself without
+  // matches, or for the bootstrap proposal, which does not use the image.
   PoseProposal ProposePose(std::size_t particle, std::span<const Match> z);
   // Of the same particle, at its sampled pose. Returns the sum of log p(z | pose) (3).
   double UpdateLandmarks(std::size_t particle, const Pose& sampled, std::span<const Match> z);
-  // The same of provisional matches, to which the proposal is blind.
+  // The same for provisional matches, which the proposal does not use.
   void UpdateProvisional(std::size_t particle, const Pose& sampled);
 
   struct FrameMatches {

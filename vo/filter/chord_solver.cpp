@@ -10,7 +10,7 @@ namespace vo {
 namespace {
 
 constexpr int kIterations = 12;
-constexpr double kFirstRate = 0.1;  // of convergence, until two steps show it
+constexpr double kFirstRate = 0.1;  // of convergence, before two steps determine it
 
 }  // namespace
 

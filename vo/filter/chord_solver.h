@@ -1,5 +1,5 @@
-// A path window of one particle, solved by the linearisation of another that is nearly the same: chord method,
-// Jacobians, covariances of the landmarks and factorisation kept, so that an iteration costs no more than the
+// Chord method for a path window: one particle's window is solved with the linearisation of another, nearly equal one.
+// Jacobians, covariances of the landmarks and factorisation are kept, so that an iteration costs no more than the
 // residuals.
 // Source:  docs/algorithm.md, section 9.1; Kelley, "Iterative methods for linear and nonlinear equations" (1995),
 //          section 5.4.1.
@@ -16,7 +16,7 @@ namespace vo {
 class ChordSolver {
  public:
   // `path.mean` and `theta` as in PathWindow; `llt` of A, and the solution, of the particle that was linearised.
-  // Without the marginal mode. False: does not converge, and is left as it was.
+  // Without the marginal mode. False: it does not converge, and is left unchanged.
   bool Solve(const PathPrior& prior, const WindowInput& in, std::span<const Track> tracks,
              const PathLinearisation& linear, const Eigen::LLT<Eigen::MatrixXd>& llt, const PathGaussian& solved,
              PathGaussian& path, std::vector<Eigen::Vector3d>& theta);

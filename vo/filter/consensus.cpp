@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kInitialising = 4;  // times the gate, squared
 constexpr int kRounds = 4;           // at least, ...
-constexpr int kMostRounds = 12;      // ... and as long as the pose moves: after a dark time it begins far off
+constexpr int kMostRounds = 12;      // ... and as long as the pose moves: after darkness the first estimate is far off
 constexpr double kStill = 0.1;       // of its standard deviation
 constexpr double kCauchySq = 5.7;    // 2.385^2: 95 % efficient on Gaussian residuals
 constexpr double kFar = 1e6;

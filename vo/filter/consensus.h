@@ -17,16 +17,16 @@ struct Consensus {
 };
 
 // Squared Mahalanobis distance from which on a match is an outlier. Wider during initialisation: the map may be a wrong
-// mode, and matches that contradict it are those that show it.
+// mode, and the matches that contradict it reveal that.
 double OutlierGate(const FilterAnswer& answer, const ScoreParams& score);
 
-// Fits the pose of one particle robustly, without provisional matches, and marks the matches whose residual there, with the landmark's and the
-// pixel's covariance, has a squared Mahalanobis distance below `gate`. `start`: near the pose that is looked for, by an
-// earlier fit.
+// Fits the pose of one particle robustly, without provisional matches, and marks the matches whose residual there, with
+// the landmark's and the pixel's covariance, has a squared Mahalanobis distance below `gate`. `start`: initial value,
+// by an earlier fit.
 Consensus FindConsensus(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
                         double gate, const FilterParams& params, const std::optional<Pose>& start = std::nullopt);
 
-// The marks alone. All of them with params.reject_outliers off.
+// The inlier marks only. All true with params.reject_outliers off.
 std::vector<bool> FindInliers(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
                               double gate, const FilterParams& params);
 

@@ -3,10 +3,10 @@
 //          family's own (6)-(9).
 // State:   the camera pose, its velocity, and for every frame in which a landmark was first seen a copy of the pose
 //          (its anchor), kept as long as a landmark uses it; each landmark is (x, y, rho) in its anchor's camera. The
-//          relation between anchor, camera and landmark is then exact: it does not depend on where the world has its
-//          origin, and an error common to all poses (drift) cancels in it however large it is. A landmark moved into W
-//          at its first view would carry the linearisation of rho (p_A - p) there for good, which is pixels when
-//          neither the depth nor the pose is well known.
+//          relation between anchor, camera and landmark is then exact: it does not depend on the origin of the world,
+//          and an error common to all poses (drift) cancels in it however large it is. A landmark transformed to W at
+//          its first view would keep the linearisation of rho (p_A - p) there, an error of pixels when both depth and
+//          pose are uncertain.
 // Cost:    n^2 m for n states and m matches.
 #pragma once
 
@@ -29,7 +29,7 @@ class EkfSlam final : public Filter {
   void PredictAgain(const MotionInput& input) override;  // input.turn is left out
   // One linearisation at the prediction: the textbook EKF. With joint_iterations above 1 at most that many steps of
   // Gauss-Newton to the joint mode of poses and landmarks: landmarks are then linearised where this frame's noise has
-  // moved them, so that motion is seen in noise (docs/odometry.md). Covariance by Joseph's form.
+  // moved them, and noise is mistaken for motion (docs/odometry.md). Covariance by Joseph's form.
   const FilterAnswer& Update(std::span<const Match> matches) override;
   void AddLandmarks(std::span<const FirstView> views) override;
   void KeepLandmarks(const std::vector<bool>& keep) override;
@@ -57,7 +57,7 @@ class EkfSlam final : public Filter {
   int joint_iterations_;
   JointState state_;
   Eigen::MatrixXd P_;
-  Matrix12 since_known_ = Matrix12::Zero();  // covariance of the camera, had its pose been known at the last update
+  Matrix12 since_known_ = Matrix12::Zero();  // covariance of the camera given its pose at the last update
   struct BeforePrediction {
     double dt;  // [s]
     Pose pose;

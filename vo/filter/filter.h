@@ -1,4 +1,4 @@
-// Filter interface of the family: prediction, update, landmarks, and what an odometry reads of them.
+// Filter interface of the family: prediction, update, landmarks, and the posterior.
 // Frames:  poses T_WC; image points on the plane z = 1 of an undistorted camera.
 #pragma once
 
@@ -36,7 +36,7 @@ struct FilterAnswer {
   std::vector<BeliefComponent> mixture;  // empty before the first update
   double effective_particles = 1;        // before resampling
   NumericalEvents events;                // since the last prediction began
-  bool initialising = false;             // no pose is sampled yet: the whole map may turn out to be a wrong mode
+  bool initialising = false;             // no pose is sampled yet: the whole map may be a wrong mode
   // Of the initialisation: the window's -2 log density at its mode below that of as many coordinates at the 99 % gate.
   double start_score = 0;
   double scale_change =
@@ -46,8 +46,7 @@ struct FilterAnswer {
   std::vector<StartPose> start;
 };
 
-// One path of the posterior, taken as known: the data association's outlier test works with it. Valid until the filter
-// changes.
+// One path of the posterior, taken as known, for the data association's outlier test. Valid until the filter changes.
 struct ReferencePath {
   PoseGaussian prediction;                 // of the present pose
   LocalMap map;                            // landmarks given that path
@@ -63,7 +62,7 @@ class Filter {
 
   // dt > 0 [s].
   virtual void Predict(double dt, const MotionInput& input = {}) = 0;
-  // The prediction that was made last, anew with another input. Nothing was updated since.
+  // Repeats the last prediction with another input. Nothing was updated since.
   virtual void PredictAgain(const MotionInput& input) = 0;
   // Without matches the filter coasts. Returns answer().
   virtual const FilterAnswer& Update(std::span<const Match> matches) = 0;
@@ -88,7 +87,7 @@ class Filter {
   };
   // Means by all images, standard deviations by those of sampled poses alone. Decides which landmarks are permanent.
   virtual std::vector<LandmarkBelief> LandmarkBeliefs() const = 0;
-  // By all images, poses that are not sampled integrated out. Costs more.
+  // By all images, poses that are not sampled integrated out. More expensive.
   struct LandmarkSpread {
     double inverse_depth_sigma;  // [1/m]
     // Moments of the landmark's place in W over the posterior, linearised at the landmark's mean. None where an inverse

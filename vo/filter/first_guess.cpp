@@ -11,7 +11,7 @@ void TriangulateAnew(const Window& window, const LandmarkTable& table, const Win
   solution.modes = Triangulate(window, table, in, solution);
 }
 
-// Images of the landmarks that both frames see.
+// Images of the landmarks observed in both frames.
 std::vector<RayPair> PairsOf(const Window& window, const WindowInput& in, int first, int last) {
   std::vector<RayPair> pairs;
   for (const Track& track : window.tracks()) {

@@ -23,7 +23,7 @@ void FixedLag::PredictAgain(const MotionInput& input) {
   SetReference();
 }
 
-// The window moves as a whole. What it has seen of landmarks that stay where they are no longer fits.
+// The window moves as a whole. Its observations of landmarks that stay in place are dropped.
 void FixedLag::Correct(const PathCorrection& correction) {
   uncorrected_.emplace(window_, particles_);
   Correction motion{{}, correction.first_landmark};
@@ -60,7 +60,8 @@ const FilterAnswer& FixedLag::Update(std::span<const Match> z) {
   return answer_;
 }
 
-// The poses sampled have changed the rest. Landmarks that are alike have followed them, evidence has not.
+// The rest is solved again after poses were sampled. Landmarks of shared linearisations have been updated, evidence has
+// not.
 void FixedLag::SolveRest() {
   SetPrior();
   if (alike_.empty()) return SolveAll();

@@ -10,7 +10,7 @@ namespace vo {
 class FixedLag final : public WindowPhase {
  public:
   FixedLag(const ParticleFilterSettings& settings, const FilterPrior& prior) : WindowPhase(settings, prior) {}
-  // Goes on with the window and the solutions of a finished initialisation.
+  // Continues with the window and the solutions of a finished initialisation.
   explicit FixedLag(WindowPhase&& finished) : WindowPhase(std::move(finished)) { SolveRest(); }
 
   void Predict(double dt, const MotionInput& input = {}) override;

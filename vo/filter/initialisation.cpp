@@ -83,8 +83,8 @@ void Initialisation::Take(CorrectedWindow&& corrected) {
   particles_[0].landmarks = std::move(corrected.landmarks);
 }
 
-// The path gives the corrections, and these the path: after one round in each frame residuals still reach fifteen
-// standard deviations after thirty frames.
+// Alternates between path and shutter corrections: with one iteration per frame residuals still reach fifteen standard
+// deviations after thirty frames.
 void Initialisation::IterateShutterCorrection() {
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kShutterRounds; ++round) {
@@ -103,8 +103,8 @@ void Initialisation::SolveOther(std::size_t i, const WindowOptions& options, Pat
   Solve(corrected.window, in, options, other);
 }
 
-// By one other mode in each frame; by all where the present one does not fit: its objective is above the number of
-// measurements.
+// Challenge by one other mode in each frame; by all where the present one does not fit: its objective is above the
+// number of measurements.
 void Initialisation::ChallengeInTurn() {
   for (std::uint32_t k = 0; k < kGuesses; ++k) {
     Challenge(0, frame_ + k, StartOptions());
@@ -139,7 +139,7 @@ std::vector<StartPose> Initialisation::StartPath() const {
   return start;
 }
 
-// Each particle gets a solution of its own, to be sampled, and a weight.
+// Gives each particle its own solution, to be sampled, and a weight.
 void Initialisation::Finish() {
   const double log_evidence = particles_[0].solution.path.log_evidence;
   if (rolling()) {
@@ -157,7 +157,7 @@ void Initialisation::Finish() {
   }
   Weigh();
   answer_.start = StartPath();
-  // An unknown scale is a gauge freedom: where each particle drew its own, their common map would have none.
+  // An unknown scale is a gauge freedom: with a separate draw for each particle their common map would have none.
   if (settings_.landmark.scale_sigma > 0)
     for (Particle& particle : particles_) ConditionOnScale(particle.pose, particle.solution.path);
 }

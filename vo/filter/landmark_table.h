@@ -1,4 +1,4 @@
-// Landmark table: which anchor each landmark has, the same for all particles, since all associate alike.
+// Landmark table: anchor of each landmark, the same for all particles, since they share the data association.
 #pragma once
 
 #include <algorithm>

@@ -16,8 +16,8 @@ struct MotionModel {
   Matrix12 Q = Matrix12::Zero();
 };
 
-// Present pose as landmarks seen long ago give it, which the path has drifted away from: each particle's last sampled
-// pose, its velocity and the landmarks concerned move in W such that its prediction has this pose.
+// Correction of a drifted path by the present pose from landmarks seen long ago: each particle's last sampled pose, its
+// velocity and the landmarks concerned move in W such that its prediction has this pose.
 struct PathCorrection {
   Pose pose;
   int first_landmark = 0;  // this one and those behind it move, but for those first seen with the one before

@@ -7,7 +7,7 @@
 namespace vo {
 namespace {
 
-// Windows exist for sampled poses, proposals that linearise, and weights that are no density ratio at the sample.
+// Windows require a sampled pose, a linearising proposal, and a weight other than the density ratio at the sample.
 bool SupportsWindows(const FilterParams& params) {
   return params.sampled == Sampled::pose &&
          (params.proposal == Proposal::ekf || params.proposal == Proposal::iterated) &&

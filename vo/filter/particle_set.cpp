@@ -19,7 +19,7 @@ double Peak(const std::vector<double>& logarithms) {
   return peak;
 }
 
-// exp(log_weights) scaled to sum 1, in place. What is not finite is weight 0; where nothing is, all become equal.
+// exp(log_weights) scaled to sum 1, in place. Non-finite ones get weight 0; if all are non-finite, all become equal.
 // Returns the largest finite one before, 0 without any.
 double NormaliseWeights(std::vector<double>& log_weights) {
   const double peak = Peak(log_weights);

@@ -10,7 +10,7 @@ ParticleColumns ExactDraws(const ParticleColumns& offsets, const ParticleColumns
   if (n <= normals.rows()) return normals;
   ParticleColumns draws = normals.colwise() - normals.rowwise().mean();
   if (n >= normals.rows() + offsets.rows() + 2) {
-    // Rows of the offsets that the others span already (particles that are all at one place) are left out by the rank.
+    // Linearly dependent rows of the offsets (particles that are all at one place) are left out by the rank.
     const Eigen::MatrixXd centred = (offsets.colwise() - offsets.rowwise().mean()).transpose();
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(centred);
     const Eigen::MatrixXd basis = (qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank())).eval();

@@ -14,7 +14,7 @@
 namespace vo {
 
 // Draws for all particles together that are exact to second order: over the particles mean 0, covariance I and, with
-// enough particles, no correlation with where the particles are. On a linear-Gaussian model the particles then have the
+// enough particles, no correlation with the particles' offsets. On a linear-Gaussian model the particles then have the
 // moments of infinitely many; each by itself is still a draw. One column per particle.
 using ParticleColumns = Eigen::MatrixXd;
 

@@ -17,10 +17,10 @@ struct PoseProposal {
   NumericalEvents events;  // not positive definite: the evidence is not a number
 };
 
-// `batch`: the matches, at least one, and the particle's landmarks, as loaded; at the end batch.linearised_at() says
-// where it is linearised. Proposal::ekf: one linearisation at the prediction. Proposal::iterated: until within
+// `batch`: the matches, at least one, and the particle's landmarks, as loaded; at the end batch.linearised_at() is the
+// point of linearisation. Proposal::ekf: one linearisation at the prediction. Proposal::iterated: until within
 // kToleranceSigma (gauss_newton.h) of the mode or max_iterations. Landmarks that come to lie behind the camera are left
-// out of that iteration. `start`: where the search for the mode begins, with the landmarks where the batch has them.
+// out of that iteration. `start`: initial value of the iteration, with the landmarks where the batch has them.
 PoseProposal Propose(const PoseGaussian& prediction, MatchBatch& batch, const FilterParams& params, const Pose& start);
 
 }  // namespace vo

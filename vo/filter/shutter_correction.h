@@ -1,4 +1,4 @@
-// Rolling-shutter correction of a window: what its rows measured, referred to the frames' stamps by the velocities
+// Rolling-shutter correction of a window: measurements of its rows, referred to the frames' stamps by the velocities
 // along a solution. The rotation between row and stamp is taken out of the image point; the translation v dt remains as
 // an offset of the camera's centre, or is taken out with the landmark's depth as well.
 #pragma once
@@ -11,9 +11,9 @@
 
 namespace vo {
 
-// Where the corrected image points are seen from. row_pose: the centre at the row's time. frame_pose: the centre at the
-// stamp; used as long as the window is open, because an offset v dt is a metric baseline, which would hold the scale of
-// the first guess and count as information on it.
+// Centre of projection of the corrected image points. row_pose: the centre at the row's time. frame_pose: the centre at
+// the stamp; used as long as the window is open, because an offset v dt is a metric baseline, which would hold the
+// scale of the first guess and count as information on it.
 enum class ShutterReference { row_pose, frame_pose };
 
 // Slots from `first` to `last` of a window; -1: the sampled pose before it.
@@ -27,7 +27,7 @@ struct CorrectedWindow {
   std::vector<Landmark> landmarks;  // from their corrected first views
 };
 
-// Matches of these slots, and landmarks that were first seen there. Each row is corrected from what it measured, not
+// Matches of these slots, and landmarks that were first seen there. Each row is corrected from its measurement, not
 // from an earlier correction. `first_views`: per landmark; no update has changed those of the slots yet.
 // `rates`: with the path's rates of rows.
 CorrectedWindow CorrectShutter(const Window& window, const LandmarkTable& table, std::span<const FirstView> first_views,
@@ -40,8 +40,8 @@ struct PoseMotion {
   Vector6 MeanVelocity(double time) const { return velocity + time / 2 * acceleration; }  // until then
 };
 // At the start of the window and at each of its poses, without the prior, whose error would shear the map of the first
-// frame for good. At the last pose the mean velocity of its step: with a parabola's weight of 3/2 on that pose the
-// corrections and the solution, which alternate, run away from each other.
+// frame permanently. At the last pose the mean velocity of its step: with a parabola's weight of 3/2 on that pose the
+// alternation of corrections and solution diverges.
 std::vector<PoseMotion> MotionsAlong(const Window& window, const Pose& start, const PathGaussian& path);
 
 }  // namespace vo

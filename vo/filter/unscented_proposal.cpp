@@ -83,7 +83,7 @@ PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& ma
     }
     const UnscentedMoments<6, 2> z = points.Moments<2>(y);
     const Matrix26 C = z.cross.transpose() * prior_information;
-    const Eigen::Matrix2d V = (z.covariance - C * z.cross)                          // what the straight line leaves
+    const Eigen::Matrix2d V = (z.covariance - C * z.cross)                          // residual of the linear fit
                               + J * landmark.covariance * J.transpose() + match.R;  // (3), at the predicted pose
     const Eigen::Matrix<double, 6, 2> CtW = C.transpose() * V.inverse();
     const Eigen::Vector2d e = match.z - z.mean;

@@ -83,8 +83,8 @@ UnscentedMoments<N, M> UnscentedTransform(const Eigen::Matrix<double, N, N>& cov
 }
 
 // Sigma points of the pose, q_hat (x) Exp(chi). Given the pose the features are independent of one another, so each is
-// linearised statistically by itself, z_n = z_bar_n + C_n (s - s_hat) + noise, and all are taken in information form:
-// cost linear in the matches. The noise of a feature is what the straight line leaves, its landmark's share, and R.
+// linearised statistically by itself, z_n = z_bar_n + C_n (s - s_hat) + noise, and all are used in information form:
+// cost linear in the matches. The noise of a feature is the residual of the linear fit, its landmark's part, and R.
 // Landmarks that lie behind the camera at a sigma point are left out.
 PoseProposal ProposeUnscented(const PoseGaussian& prediction, const LocalMap& map, std::span<const Match> matches,
                               const UnscentedParams& params);

@@ -13,7 +13,7 @@
 
 namespace vo {
 
-// Everything about one time step that does not depend on the particle.
+// Particle-independent terms of one time step.
 class VelocityFilter {
  public:
   struct State {
@@ -39,7 +39,7 @@ class VelocityFilter {
 
   // (37)-(43) as a function of the s_pf still to be sampled.
   Gain Condition(const Vector6& s_pf_previous, const State& s_kf) const;
-  // The same in two parts. The first is alike for all particles whose covariance is, and leaves the mean to the second.
+  // The same in two parts. The first is common to all particles of equal covariance, and leaves the mean to the second.
   Gain ConditionCovariance(const Matrix6& covariance) const;
   void ConditionMean(const Vector6& s_pf_previous, const Vector6& mean, Gain& gain) const;
 

@@ -11,7 +11,7 @@ constexpr double kUnit = 1e-6;  // tolerance of the weights' sum, and of a quate
 constexpr double kRounding = 1e-9;
 
 bool Finite(const Pose& pose) {
-  return pose.p_WC.allFinite() && std::abs(pose.q_WC.coeffs().norm() - 1) < kUnit;  // false for what is not a number
+  return pose.p_WC.allFinite() && std::abs(pose.q_WC.coeffs().norm() - 1) < kUnit;  // false for NaN
 }
 
 bool Symmetric(const Eigen::Ref<const Eigen::MatrixXd>& P) {
@@ -19,7 +19,7 @@ bool Symmetric(const Eigen::Ref<const Eigen::MatrixXd>& P) {
 }
 
 #if !defined(NDEBUG)
-// Whatever the units: as correlations, of what varies at all. Costs too much to be looked at everywhere.
+// Independent of units: as correlations, of the entries with variance. Too expensive for every stage.
 bool NoNegativeEigenvalue(const Matrix12& P) {
   const Eigen::Array<double, 12, 1> scale = (P.diagonal().array() > 0).select(P.diagonal().array().rsqrt(), 0);
   const Matrix12 correlation = scale.matrix().asDiagonal() * P * scale.matrix().asDiagonal();
@@ -32,7 +32,7 @@ bool PositiveDefinite(const Eigen::Matrix2d& R) { return R.allFinite() && R(0, 0
 
 }  // namespace
 
-// Entries are numbers, the same on both sides, and no variance is negative; `above_zero`: nor zero.
+// Entries are finite and symmetric, and no variance is negative; `above_zero`: nor zero.
 void WatchedFilter::RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage,
                                      const char* whose, bool above_zero) const {
   if (!covariance.allFinite())

@@ -1,5 +1,5 @@
-// Filter with checks of its inputs and, after each stage, of its state: what is not finite, not normalised or not a
-// covariance throws FilterFault with the frame and the stage.
+// Filter with checks of its inputs and, after each stage, of its state: a state that is not finite, not normalised or
+// not a covariance throws FilterFault with the frame and the stage.
 // Cost:    2 us for a frame of 100 features, a fortieth of the time of eight particles.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace vo {
 
-// Fault of the filter itself, or of its caller: no image leads to one.
+// Internal error of the filter or its caller, independent of the images.
 class FilterFault : public std::runtime_error {
  public:
   // "frame 17, update: the pose's covariance has a variance of -1e-09"; frame 0 is the first.

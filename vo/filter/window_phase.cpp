@@ -81,9 +81,9 @@ void WindowPhase::Challenge(std::size_t i, std::uint32_t guess, WindowOptions op
     SolveOther(i, options, other);
     if (other.path.events.not_converged == 0 || !(other.path.objective < objective)) break;
   }
-  // By the density at the mode, not by evidence: evidence rewards depths that stay unknown, as if each had a prior of
-  // its own, and prefers a deep scene with little parallax to a wall. Where the descent has not ended, the objective is
-  // that of an expansion far from the mode; matches behind the camera are not part of it.
+  // By the density at the mode, not by evidence: evidence favours depths that stay unknown, as if each had a prior of
+  // its own, and prefers a deep scene with little parallax to a wall. Where the descent has not converged, the
+  // objective is that of an expansion far from the mode; matches behind the camera are not part of it.
   const NumericalEvents &had = particles_[i].solution.path.events, &has = other.path.events;
   if (std::isnan(objective) ||
       (other.path.objective < objective && has.not_converged == 0 && has.behind_camera <= had.behind_camera))

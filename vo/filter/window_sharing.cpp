@@ -1,4 +1,4 @@
-// Shared linearisation of a window phase: particles that are alike are solved by that of the heaviest.
+// Shared linearisation of a window phase: particles near the heaviest are solved by its linearisation.
 #include <algorithm>
 #include <cmath>
 

@@ -15,7 +15,7 @@ constexpr int kWidenings = 2;
 constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
 constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
 constexpr int kLeastRecognised = 15;
-constexpr double kLeastRecall = 0.4;  // of the landmarks that the recognised ones let expect
+constexpr double kLeastRecall = 0.4;  // of the landmarks expected from the recognised ones
 constexpr double kClearlyMore = 1.2;
 constexpr std::size_t kClearlyMoreMatches = 3;
 constexpr double kLeastMatches = 8, kLeastAgreement = 0.1, kLeastAgreementAtTheStart = 0.25;
@@ -31,20 +31,20 @@ bool Failed(const Association& association, bool initialising) {
          static_cast<double>(association.matches.size()) < least * static_cast<double>(association.searched.size());
 }
 
-// The whole map follows from the first matches: at the start more of the searched have to agree.
+// At the start the whole map depends on the first matches: more of the searched have to agree.
 bool HasMatches(const Association& association, bool initialising) {
   const double agreement = initialising ? kLeastAgreementAtTheStart : kLeastAgreement;
   return static_cast<double>(association.matches.size()) >=
          std::max(kLeastMatches, agreement * static_cast<double>(association.searched.size()));
 }
 
-// Whether a relocalised frame shows the landmarks that it should.
+// Whether enough of the landmarks expected in a relocalised frame are matched.
 bool ShowsThePlace(const Association& association) {
   return association.unseen_matched >= kLeastRecognised &&
          association.unseen_matched >= kLeastRecall * association.unseen;
 }
 
-// The prediction of a frame that is kept until now, and its association.
+// The best prediction of a frame so far, and its association.
 struct Trial {
   Filter& filter;
   const std::function<Association(const MotionInput&)>& associate;

@@ -1,6 +1,6 @@
 // Association of a frame whose prediction may fail: process noise estimated on line, the prediction repeated with more
-// of it, then about the rotation that direct alignment of the images gives. A repetition is kept where clearly more
-// matches agree; a frame in which too few agree has none.
+// noise, then about the rotation found by direct alignment of the images. A repetition is kept where clearly more
+// matches agree; a frame in which too few agree has no matches.
 // Source:  docs/algorithm.md, section 7.1.
 #pragma once
 
@@ -29,8 +29,8 @@ class AdaptiveAssociation {
   // Prediction of a frame that is not associated.
   void Predict(Filter& filter, double dt, double coasting_s) const;
 
-  // Whether `grey` is the image that was kept last, pixel by pixel: a camera or recording has repeated it, and it
-  // measures nothing. Not more than twice in a row: a camera that stands still, without noise, shows the same.
+  // Whether `grey` equals the image that was kept last, pixel by pixel: a frame repeated by the camera or the
+  // recording, without new information. At most twice in a row: a static, noise-free camera gives equal images too.
   bool IsRepeated(const cv::Mat& grey);
 
   // `grey`: of a frame whose pose is not integrated out, being that of matches or of new landmarks.

@@ -19,7 +19,7 @@ constexpr int kShutterRounds = 3;
 
 constexpr double kNearly = 2;  // times the gate: rejected residuals that count for the noise
 
-constexpr double kMoved_px = 1.5;  // of a predicted image, or a streak: what is searched again
+constexpr double kMoved_px = 1.5;  // of a predicted image, or a streak: beyond it a landmark is searched again
 
 using Results = std::vector<SearchResult>;  // by request
 
@@ -137,8 +137,8 @@ Consensus RobustPose(const AssociationContext& in, std::span<const Candidate> ca
   return consensus;
 }
 
-// Second search of what the pose that agrees shows elsewhere: landmarks without a match that agrees, and those whose
-// streak is another. Returns whether there were any.
+// Second search about the robust pose: landmarks without an agreeing match, and those whose streak differs. Returns
+// whether there were any.
 bool SearchAgain(const AssociationContext& in, std::span<const Candidate> candidates, const Consensus& consensus,
                  std::vector<SearchRequest>& requests, Results& results) {
   const Pose& at = consensus.pose.mean;

@@ -41,9 +41,9 @@ struct Association {
   double nis = 0;                      // sum of mahalanobis_sq
   int repeated = 0;                    // predictions made again and kept
   int unseen = 0, unseen_matched = 0;  // searched landmarks that were not matched for a while
-  PoseGaussian predicted, agreed;      // of the reference path: before the matches, and as the robust fit has it
+  PoseGaussian predicted, agreed;      // of the reference path: before the matches, and by the robust fit
 
-  // No match is one: the frame is not localised.
+  // Rejects all matches: the frame is not localised.
   void RejectAll();
 };
 
@@ -61,9 +61,9 @@ int NextBudget(const Association& association, const FeatureParams& params);
 // the landmarks searched for are matched, the frame is blind (blur, darkness), and only (44) is applied.
 void UpdateScores(const Association& association, const ScoreParams& params, std::span<LandmarkRecord> records);
 
-// Level of the noise of a sequence: mean ratio of the squared residuals of matches to R as one image gives it, of
-// registration alone. What all landmarks share: blur, compression, a wrong calibration. The prior of each landmark's
-// own ratio.
+// Noise level of a sequence: mean ratio of the squared residuals of matches to R of a single image, which covers
+// registration alone. Common to all landmarks: blur, compression, a wrong calibration. The prior of each landmark's own
+// ratio.
 class NoiseLevel {
  public:
   double value() const { return value_; }

@@ -1,5 +1,5 @@
-// Exposure time from motion blur: of several, the one whose blur makes the patches of first views most alike to the
-// image. It is used to compare patches at equal blur (patch.h); zero until the images show one.
+// Exposure time from motion blur: of several candidates, the one whose blur makes the patches of first views most
+// similar to the image. It is used to compare patches at equal blur (patch.h); zero until the images determine one.
 // Source:  docs/algorithm.md, section 7.4. Mean over matches of log(1 - correlation), relative to that of no blur.
 // Units:   seconds; pixels per second.
 #pragma once

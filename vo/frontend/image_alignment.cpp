@@ -137,7 +137,7 @@ bool AlignLevel(const Camera& camera, const cv::Mat& then, const cv::Mat& now, E
   return true;
 }
 
-// Whether the later image is the earlier one, turned: a part of what varies in it is the same.
+// Whether the rotated earlier image explains a sufficient part of the later one's variation.
 bool Explains(const Camera& camera, const cv::Mat& then, const cv::Mat& now, const Eigen::Quaterniond& R) {
   const std::vector<TemplatePixel> pixels = TemplateOf(camera, then);
   Residuals residuals;

@@ -1,6 +1,6 @@
-// Points that may move on their own. A landmark has proven to be at rest once it has agreed with the robust pose often
-// enough; until then its matches are provisional: the pose is estimated without them, and they have to agree with it.
-// What moves is found not to agree before it acts on the pose, however many landmarks are begun on it.
+// Points that may move on their own. A landmark counts as static once it has agreed with the robust pose often enough;
+// until then its matches are provisional: the pose is estimated without them, and they have to agree with it. Moving
+// points are thus rejected before they affect the pose, however many landmarks begin on them.
 // Source:  docs/algorithm.md, section 7.3.
 #pragma once
 

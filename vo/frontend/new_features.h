@@ -24,7 +24,7 @@ struct NewFeature {
 
 // Scale from a calibration target, a chessboard of known size: the inner corners of the board with their inverse
 // depths, row by row; empty unless all are visible at invertible pixels. Corners are measured with `sigma_px`. The
-// distance of the board is an error common to all corners, but a filter takes them for independent: sigma^2 is n times
+// distance of the board is an error common to all corners, but a filter treats them as independent: sigma^2 is n times
 // the variance from the board's pose, so that the mean of n corners has the right one.
 std::vector<NewFeature> FindTarget(const cv::Mat& grey, const Camera& camera, const TargetParams& target,
                                    double sigma_px);

@@ -1,7 +1,7 @@
-// Relocalisation: the camera's pose from landmarks that are recognised by their descriptors alone, wherever the
-// prediction is.
-// Source:  nearest neighbours with Lowe's ratio test ("Distinctive image features", 2004); P3P and consensus (Fischler &
-//          Bolles 1981), by OpenCV's solvePnPRansac. docs/algorithm.md, section 7.2.
+// Relocalisation: the camera's pose from landmarks recognised by their descriptors alone, independent of the
+// prediction.
+// Source:  nearest neighbours with Lowe's ratio test ("Distinctive image features", 2004); P3P and consensus (Fischler
+//          & Bolles 1981), by OpenCV's solvePnPRansac. docs/algorithm.md, section 7.2.
 // Frames:  points in W, poses T_WC; image points on the plane z = 1.
 #pragma once
 
@@ -32,7 +32,7 @@ class Relocaliser {
  public:
   Relocaliser(const Camera& camera, const FeatureParams& params, int border_px);
 
-  // None where fewer than kLeastInliers points agree on a pose: by chance some five of a thousand do.
+  // None where fewer than kLeastInliers points agree on a pose: some five of a thousand agree by chance.
   std::optional<Relocalisation> Find(const PreparedFrame& frame, std::span<const KnownPoint> points) const;
 
   static constexpr std::size_t kLeastInliers = 12;

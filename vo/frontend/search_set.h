@@ -1,6 +1,6 @@
 // Search set of a frame: the landmarks that are predicted to be visible, at most max_searched of them; and
 // coarse-to-fine matching, where the pose from a few coarse features, searched for in wide windows, predicts all others
-// within small ones. It only guides the search; it is no measurement. Private to vo/frontend.
+// within small ones. That pose only guides the search and is not a measurement. Private to vo/frontend.
 // Source:  docs/algorithm.md, section 7; the coarse stage of Klein & Murray, "Parallel Tracking and Mapping" (2007).
 //          The pose is the robust fit of the outlier test (consensus.h) to the coarse matches alone.
 // Units:   pixels in the image; matches are on the plane z = 1.
@@ -66,7 +66,7 @@ SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidat
 
 // Indices of params.coarse_features candidates: spread over the image, in each part of it those of high score and known
 // depth first. Empty where fewer have been in the map for ten frames: matches about the prediction of an unknown depth
-// would confirm it.
+// would be biased towards it.
 std::vector<std::size_t> SelectCoarseFeatures(std::span<const Candidate> candidates,
                                               std::span<const LandmarkRecord> records, const Camera& camera,
                                               const FeatureParams& params);

@@ -133,8 +133,8 @@ std::string Plain(std::string_view text) {
   return plain;
 }
 
-// OpenCV's XML (cv::FileStorage) as YAML, line for line: elements of words, and those in them, as matrices have. Without
-// OpenCV's own reader (4.6), which ends the program on slightly malformed files.
+// OpenCV's XML (cv::FileStorage) as YAML, line for line: elements of words, and those in them, as matrices have.
+// Without OpenCV's own reader (4.6), which ends the program on slightly malformed files.
 std::string YamlOfXml(std::string_view xml, const std::filesystem::path& file) {
   const auto fail = [&](const char* what) { throw settings::Error({{file.string(), 0, 0, what}}); };
   if (xml.find("<opencv_storage") == std::string_view::npos)
@@ -177,7 +177,7 @@ std::string WithBlanks(std::string_view yaml) {
   return out;
 }
 
-// What begins the first line that is no comment.
+// First data of the first line that is not a comment.
 std::string_view FirstData(std::string_view text) {
   while (text.starts_with('#') || text.starts_with('\n') || text.starts_with('\r')) {
     const std::size_t end = text.find('\n');
@@ -212,7 +212,7 @@ std::string SetLens(std::span<const double> coefficients, Camera& camera) {
 
 Camera ReadCamera(const std::filesystem::path& file) {
   const std::optional<std::string> content = base::ReadFile(file);
-  if (!content) settings::Document::FromFile(file);  // says why
+  if (!content) settings::Document::FromFile(file);  // throws with the reason
   const std::string_view text = base::WithoutMark(*content);
   const auto refuse = [&](const std::string& what) { throw settings::Error({{file.string(), 0, 0, what}}); };
   const std::string unknown =
@@ -223,7 +223,7 @@ Camera ReadCamera(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
   std::optional<settings::Document> read;
   try {
-    // Ours knows no tags, and is one document.
+    // Our dialect has no tags and a single document.
     read = settings::Document::FromText(is_xml    ? YamlOfXml(text, file)
                                         : is_ours ? std::string(text)
                                                   : WithBlanks(text),

@@ -13,7 +13,8 @@ namespace vo {
 // The format is detected from the content: camera.yaml (docs/sequence_format.md); sensor.yaml of an EuRoC camera;
 // camchain.yaml of Kalibr (cam0, pinhole with radtan or equidistant); camera_info of ROS (plumb_bob or equidistant);
 // cv::FileStorage of OpenCV's calibration sample (YAML or XML, fisheye_model included); OpenVINS, ORB-SLAM, camodocal,
-// Basalt, COLMAP, DSO. Lens models with more coefficients are refused. Throws settings::Error with every problem, with line and column except for OpenCV's XML.
+// Basalt, COLMAP, DSO. Lens models with more coefficients are rejected. Throws settings::Error with every problem, with
+// line and column except for OpenCV's XML.
 Camera ReadCamera(const std::filesystem::path& file);
 
 // Name of a preset, or a file. Also throws std::invalid_argument.

@@ -9,7 +9,7 @@
 namespace vo {
 namespace {
 
-// What the parameters of a model are: focal lengths (one or two), the principal point, and lens coefficients.
+// Parameters of a model: focal lengths (one or two), the principal point, and lens coefficients.
 struct Model {
   std::size_t focal_lengths;
   std::size_t coefficients;  // all of them in the order of SetLens, but for one or two: k1, k2
@@ -42,7 +42,7 @@ std::vector<Words> DataLines(std::string_view text) {
   return lines;
 }
 
-// Returns what is wrong with the parameters; empty: nothing.
+// Returns the problem of the parameters; empty: none.
 std::string SetParameters(const Model& model, std::span<const base::Word> words, Camera& camera) {
   std::vector<double> p;
   for (const base::Word& word : words) {
@@ -125,7 +125,7 @@ void ReadCamodocal(settings::Section root, Camera& camera) {
     ReadCoefficients(distortion, "", camera);
     distortion.IgnoreRest();
   } else {
-    camera.lens = Lens::fisheye;  // r = theta + k2 theta^3 + ...: ours counts from 1
+    camera.lens = Lens::fisheye;  // r = theta + k2 theta^3 + ...: our coefficients count from 1
     projection.Require("mu", camera.fx, settings::Range::Positive());
     projection.Require("mv", camera.fy, settings::Range::Positive());
     projection.Require("u0", camera.cx);

@@ -43,10 +43,10 @@ struct Match {
   Eigen::Vector3d centre_offset_W =
       Eigen::Vector3d::Zero();  // [m] of the centre that z is seen from, from the one at the stamp
   RowView row = {};
-  // Covariance, per match, of the random walk of what the patch follows about the landmark's ray.
+  // Covariance, per match, of the random walk of the patch's point about the landmark's ray.
   Eigen::Matrix2d wander = Eigen::Matrix2d::Zero();
   double inflation = 1;      // factor in R and wander that the landmark's residuals show
-  bool provisional = false;  // it tells of the landmark and not of the pose (Algorithm 1 and consensus)
+  bool provisional = false;  // updates the landmark and not the pose (Algorithm 1 and consensus)
 };
 
 // The anchor's camera A seen from the present camera C.
@@ -102,7 +102,7 @@ Match AtStamp(const Match& match, const AnchorView& view, const Eigen::Vector3d&
 // dz / d(dp in W, dphi in A) of the anchor's pose, for a landmark in front.
 Matrix26 AnchorJacobian(const Projection& projection, const Eigen::Vector3d& landmark);
 
-// A depth that is known better than LandmarkParams has it.
+// Depth with a smaller uncertainty than the prior of LandmarkParams.
 struct KnownDepth {
   double inverse_depth;  // [1/m]
   double sigma;          // [1/m]

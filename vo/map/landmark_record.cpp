@@ -8,7 +8,7 @@
 namespace vo {
 namespace {
 
-constexpr double kPriorMatches = 3;  // that the level counts for
+constexpr double kPriorMatches = 3;  // weight of the level
 constexpr double kKept = 0.98;       // of the past, from match to match: fifty of them count
 
 // Drops `count` of `landmarks`, one after the other: that between whose neighbours the fewest landmarks were begun.

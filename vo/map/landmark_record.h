@@ -19,7 +19,7 @@ namespace vo {
 // Normalised residual of one match.
 struct Residual {
   double ratio = 1;   // r'S^-1 R S^-1 r / tr(S^-1 R), S = R + the landmark's: 1 on average where R is right
-  double weight = 0;  // tr((S^-1 R)^2) / 2, 0 ... 1: little where the landmark is known less well than it is seen
+  double weight = 0;  // tr((S^-1 R)^2) / 2, 0 ... 1: small where the landmark is more uncertain than its measurement
 
   // r: match less prediction; of the landmark: its own covariance in the image.
   static Residual Of(const Eigen::Vector2d& r, const Eigen::Matrix2d& of_landmark, const Eigen::Matrix2d& R);
@@ -30,8 +30,8 @@ struct Residual {
 class ResidualHistory {
  public:
   void Add(const Residual& residual);
-  // By what to multiply R, kLeast to kMost: the mean of the ratios and, with the weight of three matches, `level`, the
-  // mean of all landmarks.
+  // Factor on R, kLeast to kMost: the mean of the ratios and, with the weight of three matches, `level`, the mean of
+  // all landmarks.
   double Inflation(double level) const;
 
   static constexpr double kLeast = 0.1, kMost = 64;
@@ -53,18 +53,18 @@ struct LandmarkRecord {
   int frames_unsearched = 0;  // in a row; a blind frame searches for nothing
   bool searched = false;      // in the last frame, blind or not, or begun in it
   bool permanent = false;
-  bool known = false;         // its depth, well enough for a pose
+  bool known = false;         // depth certain enough for a pose
   bool lost = false;          // not found since a frame without matches
   ResidualHistory residuals;  // of its matches; used with MatchNoise::adaptive
 
-  // A landmark to relocalise by.
+  // Whether the landmark is a candidate for relocalisation.
   bool unseen() const {
     constexpr int kLong = 5;  // [frames]
     return known && (lost || frames_unmatched >= kLong);
   }
 };
 
-// (44): the score before the image is looked at.
+// (44): the score before the image is used.
 double PredictScore(double score, const ScoreParams& params);
 
 // (45)-(49) for a feature that was searched for. `mahalanobis_sq` = nu' S^-1 nu of its detection, with S of pose,
@@ -72,11 +72,10 @@ double PredictScore(double score, const ScoreParams& params);
 // / 2).
 double UpdateScore(double predicted_score, std::optional<double> mahalanobis_sq, const ScoreParams& params);
 
-// Kept are the permanent ones, and those that exist (lost ones: are known) and were searched for in the last
-// forget_after frames. Beyond max_landmarks, with the `wanted` that are to come, some go that the last frame did not
-// search for: of those that are not permanent the longest unsearched, of these the oldest (the first in `records`);
-// then permanent ones, so that the rest are spread evenly over the landmarks that were ever begun, and so over the
-// path.
+// Kept are the permanent ones, and those that exist (lost ones: with known depth) and were searched for in the last
+// forget_after frames. Beyond max_landmarks, with the `wanted` new ones, some that the last frame did not search for
+// are dropped: of those that are not permanent the longest unsearched, of these the oldest (the first in `records`);
+// then permanent ones, so that the rest are spread evenly over all landmarks ever begun, and so over the path.
 std::vector<bool> LandmarksToKeep(std::span<const LandmarkRecord> records, std::size_t wanted,
                                   const LandmarkParams& landmark, const ScoreParams& score);
 

@@ -33,8 +33,8 @@ class MatchBatch {
   // `marginal`: see FilterParams::marginal_mode.
   Information Linearise(const Pose& camera, bool marginal);
   const Pose& linearised_at() const { return linearised_at_; }
-  // Of each match: its residual with landmarks at their means, squared, in standard deviations; infinite behind the
-  // camera. Inflate does not matter.
+  // Of each match: its squared residual with landmarks at their means, in standard deviations; infinite behind the
+  // camera. Independent of Inflate.
   void SquaredDistances(const Pose& camera, std::vector<double>& distances);
   // From now on the matches' covariances are `factors` times those given.
   void Inflate(std::span<const double> factors);
@@ -45,8 +45,7 @@ class MatchBatch {
   double UpdateLandmarks(const Pose& camera, int max_iterations);
   void Store(std::span<Landmark> landmarks) const;
 
-  // Moments, over particles, of where the landmarks should appear from an uncertain pose. SetLandmarks forgets the
-  // former sums.
+  // Moments, over particles, of the landmarks' predicted images from an uncertain pose. SetLandmarks resets the sums.
   void AddPredictions(const Pose& camera, const Matrix6& covariance, double weight);
   ImageMoments Moments(std::size_t place) const;
 

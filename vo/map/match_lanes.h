@@ -4,10 +4,10 @@
 //          landmark's mode is mean + gain (e - j d).
 // Units:   the plane z = 1, as in landmark.h.
 //
-// The loop (match_lanes.inc) is compiled once per instruction set, with its widest vectors. No lane looks at another,
+// The loop (match_lanes.inc) is compiled once per instruction set, with its widest vectors. Lanes are independent,
 // nothing is contracted, and sums over the eight lanes come last, in a fixed order: all of them give the same bits.
 // Those files must not use inline functions of other headers: the linker keeps only one copy of such a function,
-// perhaps the one that this machine cannot run.
+// perhaps one with instructions that this machine lacks.
 #pragma once
 
 #include <cstdint>
@@ -77,7 +77,7 @@ struct MatchKernel {
   // Landmarks given the pose.
   void (*update_landmarks)(const CameraView& camera, const double* step, int max_iterations, MatchLanes* blocks,
                            int count, MatchSums& sums);
-  // To each sum, where in front: where the landmark should appear, its covariance J P J' and that of the pose (6 x 6)
+  // To each sum, where in front: the landmark's predicted image, its covariance J P J' and that of the pose (6 x 6)
   // with it.
   void (*add_predictions)(const CameraView& camera, const double* covariance, double weight, const MatchLanes* blocks,
                           int count, PredictionLanes* sums);

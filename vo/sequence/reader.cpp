@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// TUM's lists have seconds; no camera works before 0.
+// TUM's lists have seconds, not below 0.
 std::optional<std::int64_t> StampInSeconds(std::string_view text) {
   const auto stamp_ns = base::ParseSeconds(text);
   return stamp_ns && *stamp_ns >= 0 ? stamp_ns : std::nullopt;
@@ -113,7 +113,7 @@ cv::Mat ReadImage(const fs::path& file) {
   if (image.empty()) throw std::runtime_error(file.string() + ": not an image that can be decoded");
   if (image.depth() != CV_8U && image.depth() != CV_16U)
     throw std::runtime_error(file.string() + ": expected an image of 8 or 16 bits");
-  if (image.channels() == 4) cv::cvtColor(image, image, cv::COLOR_BGRA2BGR);  // alpha is of no use
+  if (image.channels() == 4) cv::cvtColor(image, image, cv::COLOR_BGRA2BGR);  // alpha is not used
   if (image.depth() == CV_8U) return image;
   cv::Mat eight_bits;
   image.convertTo(eight_bits, CV_8U, 255.0 / 65535);

@@ -19,7 +19,7 @@ struct Size {
 
 std::int64_t Number(Bytes file, std::size_t at, std::size_t count, bool little) {
   std::uint64_t value = 0;
-  if (at > file.size() || count > file.size() - at) return 0;  // no size: refused as such
+  if (at > file.size() || count > file.size() - at) return 0;  // no size: rejected
   for (std::size_t i = 0; i < count; ++i) value = value << 8 | file[at + (little ? count - 1 - i : i)];
   return static_cast<std::int64_t>(value);
 }
@@ -133,7 +133,7 @@ Size OfHdr(Bytes file) {
 
 Size OfTga(Bytes file) { return {Number(file, 12, 2, true), Number(file, 14, 2, true)}; }
 
-// Other kinds that scenes come with, by name.
+// Name of another kind of picture that occurs in scenes.
 std::string_view KnownKind(Bytes file) {
   if (Begins(file, "DDS ")) return "DDS";
   if (Begins(file, "\x01\xda")) return "SGI (.rgb)";
@@ -159,7 +159,7 @@ std::optional<Size> SizeOf(Bytes file) {
   return std::nullopt;
 }
 
-// Reads on from a place; nothing where the file ends before.
+// Sequential reader; none where the file ends early.
 class Cursor {
  public:
   Cursor(Bytes file, std::size_t at) : file_(file), at_(std::min(at, file.size())) {}
@@ -191,8 +191,7 @@ std::string WindowProblem(Cursor window, std::size_t bytes) {
   return PictureSizeProblem(corner[2] - corner[0] + 1, corner[3] - corner[1] + 1, bytes);
 }
 
-// The library takes an attribute of one of these types to be as long as the type, whatever the header says, and reads
-// on from there.
+// Attribute types of fixed length: the library ignores the header's size for them and continues after the fixed length.
 const std::map<std::int32_t, std::set<std::string_view>>& TypesByLength() {
   static const std::map<std::int32_t, std::set<std::string_view>> types = {
       {1, {"compression", "deepImageState", "envmap", "lineOrder"}},

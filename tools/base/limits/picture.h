@@ -1,5 +1,5 @@
-// Limits of picture files from elsewhere: whether one may be given to a decoder, by its kind and the size in its
-// header, before anything is allocated for it.
+// Limits of untrusted picture files: whether one may be given to a decoder, by its kind and the size in its header,
+// before anything is allocated for it.
 // Source: ISO 15948 (PNG), ITU T.81 (JPEG), TIFF 6.0, RFC 9649 (WebP), openexr.com/en/latest/OpenEXRFileLayout.html;
 // docs/reliability.md, "Hostile input".
 #pragma once
@@ -15,23 +15,23 @@ constexpr std::int64_t kMostPixels = 1 << 27;       // of any picture
 constexpr std::int64_t kPixelsOfAnyFile = 1 << 24;  // a small file may unpack to so many,
 constexpr std::int64_t kPixelsPerByte = 128;        // and to so many more for each of its bytes
 
-// What is wrong with a size for a file of so many bytes; empty: nothing.
+// Why a size is not acceptable for a file of so many bytes; empty: it is.
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes);
 
-// The same of a whole file. PNG, JPEG, BMP, TIFF, TGA, WebP, PNM and Radiance HDR pass; other kinds are not read, so
-// that no file reaches a decoder that is not needed.
+// The same of a whole file. PNG, JPEG, BMP, TIFF, TGA, WebP, PNM and Radiance HDR are accepted; all other kinds are
+// rejected, to keep files from decoders that are not needed.
 std::string PictureProblem(std::span<const std::uint8_t> file);
 
-// Whether it is a TGA, which has no mark at its beginning: by its header's fields.
+// Whether it is a TGA, which has no magic number: by its header's fields.
 // Source: Truevision, "TGA File Format Specification", version 2.0.
 bool IsTga(std::span<const std::uint8_t> file);
 
-// What is missing at the end of a PNG or JPEG file, which decoders complete with grey; empty: nothing, and for other
-// kinds. What follows the end is not looked at: cameras pad their files.
+// Part missing at the end of a PNG or JPEG file, which decoders complete with grey; empty: nothing, and for other
+// kinds. Bytes after the end are ignored: cameras pad their files.
 std::string PictureEndProblem(std::span<const std::uint8_t> file);
 
-// What is wrong with an OpenEXR file, all of it, by its header; empty: nothing. The library (3.1) makes room for an
-// attribute of any size that the header states, and for tables of a picture of any height.
+// Problem of a whole OpenEXR file, by its header; empty: none. The library (3.1) allocates any attribute size that the
+// header states, and tables for any height.
 std::string ExrProblem(std::span<const std::uint8_t> file);
 
 }  // namespace limits

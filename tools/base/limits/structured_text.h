@@ -1,5 +1,5 @@
-// Limits of JSON texts from elsewhere: what may be given to a parser that works by recursion, so that the depth
-// of its input is the stack's.
+// Limits of untrusted JSON texts for a parser that works by recursion, where the depth of the input is that of the
+// stack.
 #pragma once
 
 #include <concepts>
@@ -14,13 +14,12 @@ namespace limits {
 
 constexpr int kDeepestJson = 100;  // of lists and objects in each other; ours go to ten
 
-// What is wrong with a text for nlohmann-json, which copies and prints values by recursion; empty: nothing. Whether it
-// is JSON at all is left to the parser.
+// Problem of a text for nlohmann-json, which copies and prints values by recursion; empty: none. Whether it is valid
+// JSON is left to the parser.
 std::string JsonProblem(std::string_view text);
 
-// The whole number of a JSON value; none where it is no whole number, or one that Whole does not hold. nlohmann-json's
-// get<int>() casts: a number too large for the type becomes another one, and a number with a point may be one that no
-// cast is defined for.
+// The whole number of a JSON value; none where it is not a whole number or does not fit into Whole. nlohmann-json's
+// get<int>() casts: a number too large for the type wraps, and the cast of a number with a point may be undefined.
 template <std::integral Whole, class Json>
 std::optional<Whole> WholeNumber(const Json& json) {
   if (json.is_number_unsigned()) {

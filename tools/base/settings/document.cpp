@@ -1,4 +1,4 @@
-// Settings document: reading of the file, values set beside it, and what was asked for as JSON.
+// Settings document: reading of the file, values set beside it, and the values read as JSON.
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -11,7 +11,7 @@
 namespace settings {
 namespace {
 
-// Each key in the file that `section` or those below were not asked for, with the nearest that was.
+// Adds a problem for each key in the file that `section` or its children did not read, with the nearest valid key.
 void FindUnknownKeys(const Request& section, std::vector<Problem>& problems) {
   if (section.kind == Request::Kind::section && section.element && section.element->kind == Element::Kind::map) {
     std::vector<std::string> known;
@@ -69,7 +69,7 @@ std::size_t EditDistance(const std::string& a, const std::string& b) {
 
 std::string Suggest(const std::string& given, const std::vector<std::string>& known) {
   if (known.empty()) return "; none is known here";
-  constexpr std::size_t kLongestKey = 64;  // a hostile key is not measured
+  constexpr std::size_t kLongestKey = 64;  // bound on the edit distance of hostile keys
   std::vector<std::pair<std::size_t, std::string>> nearest;
   for (const std::string& candidate : known) {
     const bool begins = !given.empty() && (candidate.starts_with(given) || given.starts_with(candidate));
@@ -90,7 +90,7 @@ std::string Suggest(const std::string& given, const std::vector<std::string>& kn
 
 Document Document::FromFile(const std::filesystem::path& path, Dialect dialect) {
   const auto fail = [&](const std::string& why) { throw Error({{path.string(), 0, 0, why, {}}}); };
-  std::error_code none;  // of a name that no system takes; what opens it says why
+  std::error_code none;  // for an invalid name; the reason is reported when it is opened
   if (std::filesystem::is_directory(path, none)) fail("is a folder, not a file");
   errno = 0;
   std::ifstream file(path, std::ios::binary);

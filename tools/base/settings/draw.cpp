@@ -19,7 +19,7 @@ struct Drawing {
     for (std::size_t i = 0; i < element.items.size(); ++i) Walk(prefix + std::to_string(i), element.items[i]);
   }
 
-  // Whether the element is a distribution; it is its value then.
+  // Whether the element is a distribution; it is replaced by the drawn value.
   bool Draw(const std::string& path, Element& element) {
     const std::string name = element.entries[0].key;
     if (name != "uniform" && name != "log_uniform" && name != "one_of") return false;

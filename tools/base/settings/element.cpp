@@ -15,7 +15,7 @@
 namespace settings {
 namespace {
 
-// Builds the tree from the parser's events. Aliases are refused: expanding them can take exponential space.
+// Builds the tree from the parser's events. Aliases are rejected: expanding them can take exponential space.
 class Builder : public YAML::EventHandler {
  public:
   Builder(Place from, Dialect dialect, std::vector<Problem>& problems)
@@ -54,9 +54,8 @@ class Builder : public YAML::EventHandler {
 
   Element TakeRoot() { return std::move(root_); }
 
-  // What cv::FileStorage has appended to a file is one document more: its keys, where both are maps. ROS ends each of
-  // its messages with the beginning of another, which is empty: once, as yaml-cpp (0.7) finds empty ones for ever in
-  // some malformed texts.
+  // Joins a second document: keys appended by cv::FileStorage, where both are maps; or the empty document that ends a
+  // message of ROS: once, as yaml-cpp (0.7) finds empty ones endlessly in some malformed texts.
   bool Join(Builder& next) {
     if (next.root_.kind == Element::Kind::null) return !std::exchange(has_empty_, true);
     if (root_.kind != Element::Kind::map || next.root_.kind != Element::Kind::map) return false;

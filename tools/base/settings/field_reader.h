@@ -73,7 +73,7 @@ class FieldReader {
     }
     Note(reader.good_);
   }
-  // A key of older files, or a value of the choice that is visited next: a problem that names the new one.
+  // A key of older files, or such a value of the choice visited next: a problem that names the new one.
   void Renamed(const char* key, const char* now) { Note(!section_.Renamed(key, now)); }
   void Renamed(const char* key, const char* value, const char* now) {
     renamed_value_ = section_.Renamed(key, value, now);
@@ -124,7 +124,7 @@ class FieldReader {
   bool good_ = true, renamed_value_ = false;
 };
 
-// Whether all that was there is good.
+// Reads all fields of a struct; whether all given values are valid.
 template <class S>
 bool ReadFields(const Section& section, S& values) {
   FieldReader reader(section);

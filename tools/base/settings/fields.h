@@ -5,8 +5,8 @@
 //     v("position_noise", p.position_noise, {Unit::acceleration_density, Range::Positive(), "of the acceleration"});
 //   }
 //
-// What is done with it is a visitor: FieldCheck tests the ranges, FieldRows lists the rows for documentation and help,
-// FieldReader (field_reader.h) reads a settings file. The defaults are those of the struct. Standard library only.
+// Visitors use it: FieldCheck tests the ranges, FieldRows lists the rows for documentation and help, FieldReader
+// (field_reader.h) reads a settings file. The defaults are those of the struct. Standard library only.
 #pragma once
 
 #include <concepts>
@@ -20,7 +20,7 @@
 
 namespace settings {
 
-// What a number measures. A bare number is in the first unit named.
+// Physical dimension of a number. A bare number is in the first unit named.
 enum class Unit {
   none,                          // a bare number only
   time,                          // s, ms, us, ns, min
@@ -50,7 +50,7 @@ struct Range {
   static Range OddAtLeast(double min) { return {.min = min, .kind = Kind::odd}; }
   static Range PowerOfTwo(double max) { return {.min = 1, .max = max, .kind = Kind::power_of_two}; }
 
-  bool Holds(double value) const;  // false for what is not finite
+  bool Holds(double value) const;  // false for non-finite values
 };
 // "positive", "at least 3 s", "0 ... 1", "above 0 and at most 1", "odd and at least 1"; empty without a bound.
 std::string Describe(const Range& range, Unit unit);
@@ -109,7 +109,7 @@ class FieldVisitor {
     }
     prefix_ = outer;
   }
-  // A field without which a file is not read.
+  // A required field.
   template <class T>
   void Required(const char* key, T& value, const Field& field) {
     static_cast<V&> (*this)(key, value, field);
@@ -122,13 +122,13 @@ class FieldVisitor {
   std::string prefix_;
 };
 
-// A value that breaks a rule: its dotted key, and what is said of it, "= 8 must be odd and at least 1".
+// A violated rule: dotted key, and message, "= 8 must be odd and at least 1".
 struct FieldProblem {
   std::string key, message;
 };
 // The sentences "key message".
 std::string Join(const std::vector<FieldProblem>& problems, const std::string& separator);
-// Throws std::invalid_argument("subject: sentence; sentence") where there are any.
+// Throws std::invalid_argument("subject: sentence; sentence") if there are any problems.
 void ThrowIfAny(const std::vector<FieldProblem>& problems, const std::string& subject);
 
 // Problems of a struct: first the ranges of its table (FieldCheck check; Visit(check, params)), then its rules between
@@ -201,7 +201,7 @@ class FieldRows : public FieldVisitor<FieldRows> {
 
  private:
   static std::string Text(double value, Unit unit);
-  // Nothing where the key has a row: a table may be visited once for each variant of its struct.
+  // No effect where the key has a row: a table may be visited once for each variant of its struct.
   void Add(const char* key, const std::string& value, const std::string& range, const char* help);
 };
 

@@ -8,9 +8,9 @@
 
 namespace settings {
 
-// The number in the first unit of `unit`. On failure `problem` says what was found and what is expected, as in
+// The number in the first unit of `unit`. On failure `problem` states the text found and what is expected, as in
 // "'8 px' is not a time: expected a number with s, ms, us, ns, min, or a bare number of s". Digits are read
-// independently of the locale; nan, infinity and what overflows are refused; so is what is outside `range`.
+// independently of the locale; nan, infinity, overflow and values outside `range` are rejected.
 bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double& value, std::string& problem);
 
 // "8 ms" as 8 and " ms"; whether it begins with a finite number.

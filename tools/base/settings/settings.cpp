@@ -41,7 +41,7 @@ struct Value {
     std::string problem;
     return IsScalar("a number") && (ParseQuantity(element.text, unit, range, value, problem) || Fail(problem));
   }
-  // All items, so that each bad one is named.
+  // Reads all items, so that each invalid one is named.
   template <class T, class Read>
   bool Items(const std::string& expected, std::vector<T>& values, const Read& read) const {
     values.clear();

@@ -45,12 +45,12 @@ struct RawYaml {
 };
 
 struct Element;  // of the file
-struct Request;  // what was asked for
+struct Request;  // a registered read of a key
 struct State;    // of a document
 
-// A section of the document, or of what could be there: an absent section reads as one without keys. A cheap handle
-// that keeps the document's data alive. The readers return whether the key was there and good; otherwise `value` stays
-// as it was, and if it was there, the document has a problem. Values written to are in SI.
+// A section of the document, present or absent: an absent section reads as one without keys. A cheap handle that keeps
+// the document's data alive. The readers return whether the key was present and valid; otherwise `value` is unchanged,
+// and if it was present, the document has a problem. Values written to are in SI.
 class Section {
  public:
   bool Has(const std::string& key) const;
@@ -66,7 +66,7 @@ class Section {
   // A list of as many numbers.
   bool Read(const std::string& key, std::span<double> values, Unit unit = Unit::none, const Range& range = {});
 
-  // Like Read with the same arguments, but a key that is not there is a problem.
+  // Like Read with the same arguments, but a missing key is a problem.
   template <class... Arguments>
   bool Require(const std::string& key, Arguments&&... arguments) {
     const bool good = Read(key, std::forward<Arguments>(arguments)...);
@@ -74,7 +74,7 @@ class Section {
     return good;
   }
 
-  // One of the names. Throws std::logic_error when the default has none.
+  // One of the names. Throws std::logic_error when the default is not among them.
   template <class T>
   bool ReadChoice(const std::string& key, T& value,
                   const std::vector<std::pair<std::string, std::type_identity_t<T>>>& names) {
@@ -96,7 +96,7 @@ class Section {
     return good;
   }
 
-  // A key that may be there though it is not read: the alternative to one that is.
+  // A key that is permitted but not read: the alternative to one that is.
   void Allow(const std::string& key) { Register(key); }
 
   Section Child(const std::string& key);
@@ -108,18 +108,18 @@ class Section {
   bool ReadRaw(const std::string& key, std::vector<RawYaml>& values);
   bool ReadRaw(const std::string& key, std::vector<std::pair<std::string, std::string>>& entries);
 
-  // Adds a problem at the place of `key` (dotted for one further down), or of this section where that is not there. For
+  // Adds a problem at the place of `key` (dotted for one further down), or of this section where the key is absent. For
   // rules between several values.
   void Reject(const std::string& key, const std::string& message);
   void Reject(const std::vector<FieldProblem>& problems);
   void RequirePresent(const std::string& key);
-  // A problem that names the new key, or the new value of a key, where the old one is given; whether it is.
+  // Where the old key or value is given, adds a problem that names the new one and returns true.
   bool Renamed(const std::string& key, const std::string& now);
   bool Renamed(const std::string& key, const std::string& value, const std::string& now);
 
-  // Not read here, whatever is in it: another reader's. Not in Resolved.
+  // A key for another reader: neither read nor checked here. Not in Resolved.
   void Ignore(const std::string& key);
-  // All keys but those that are asked for.
+  // Ignores all keys that are not read.
   void IgnoreRest();
 
  private:
@@ -147,19 +147,18 @@ class Document {
   void Override(const std::string& key, const std::string& value);
 
   // Draws each value that is written as a distribution, {uniform: [3 ms, 20 ms]}, {log_uniform: [1, 100]} or
-  // {one_of: [a, b, c]}, of what may stand there. `uniform`: a number in (0, 1) that is a function of the value's dotted
-  // key. Returns keys and values. Before the first root().
+  // {one_of: [a, b, c]}, wherever a value may stand. `uniform`: a number in (0, 1) that is a function of the value's
+  // dotted key. Returns keys and values. Before the first root().
   std::vector<std::pair<std::string, std::string>> Draw(const std::function<double(std::string_view path)>& uniform);
-  // Whole number of the file's first level, for what has to be known before; none where it is not there, or bad.
+  // Whole number of the file's first level, read ahead of the rest; none where it is absent or invalid.
   std::optional<std::uint64_t> Peek(const std::string& key) const;
 
   Section root();
 
-  // Call it when everything has been asked for. Throws Error with all problems, among them each key that was not asked
-  // for.
+  // To be called after all keys have been read. Throws Error with all problems, among them each key that was not read.
   void ThrowIfBad() const;
 
-  // All values that were asked for, defaults included, in SI: JSON, which is YAML too. Read again, it gives the same
+  // All values that were read, defaults included, in SI: JSON, which is valid YAML. Read again, it gives the same
   // settings.
   std::string Resolved() const;
 

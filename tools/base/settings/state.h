@@ -55,14 +55,14 @@ struct Request {
   enum class Kind { section, list, value, absent, ignored };  // absent: required but not there, or without a default
   Kind kind = Kind::section;
   const Element* element = nullptr;                                        // in the file; null when it is not there
-  Place place;                                                             // where to complain
+  Place place;                                                             // for error messages
   std::string path;                                                        // dotted; empty for the root
   std::string json;                                                        // of a value
   bool ignores_rest = false;                                               // of a section
   std::vector<std::pair<std::string, std::unique_ptr<Request>>> children;  // of a list: without keys
 
   Request* Find(const std::string& key) const;
-  // A value was given out; returns `good`.
+  // Records a value that was read; returns `good`.
   bool Keep(std::string text, bool good) {
     kind = Kind::value;
     json = std::move(text);

@@ -48,7 +48,7 @@ class Attack {
   Steps steps_;
 };
 
-// "blur 12 ms, noise 40 e": what is changed.
+// Text of the changed parameters: "blur 12 ms, noise 40 e".
 std::string Words(const BenchFile& bench, const Combination& x) {
   std::string words;
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -79,7 +79,7 @@ void RunAttack(const BenchOptions& options, const BenchFile& bench) {
     fmt::print("nothing found in {} trials\n", result.evaluations);
     return;
   }
-  // More severe by a twentieth until it is broken nearly always.
+  // Increased by a twentieth until it is broken in nearly all worlds.
   Combination x = result.at;
   int broken = 0;
   std::string last;

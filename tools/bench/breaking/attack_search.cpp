@@ -73,7 +73,7 @@ class Search {
     return known_[x] = breaks_(x);
   }
 
-  // All at their most severe; or else one of a few random combinations.
+  // Start: all parameters at their most severe; or else one of a few random combinations.
   bool Start() {
     Combination x(options_.parameters, 1.0);
     evaluation::Draws draws(2);
@@ -84,8 +84,8 @@ class Search {
     return false;
   }
 
-  // The least norm along a direction that breaks it, to kPrecision, beginning at the best one known; infinite where none
-  // does. A better one is kept.
+  // The least norm along a direction that breaks it, to kPrecision, beginning at the best one so far; infinite where
+  // none does. A better one is kept.
   double Along(const Combination& direction) {
     const double most = LargestNorm(direction), known = std::min(Norm(best_), most);
     double whole = 0, broken = INFINITY;
@@ -110,8 +110,8 @@ class Search {
     return broken;
   }
 
-  // Without each parameter that is not needed, the smallest first; the others may grow until the norm is `slack` times as
-  // large.
+  // Removes each parameter that is not needed, the smallest first; the others may grow until the norm is `slack` times
+  // as large.
   void Shrink(double slack) {
     std::vector<std::size_t> order(best_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -134,7 +134,7 @@ class Search {
     Along(best_);
   }
 
-  // Directions among the changed parameters, by their angles in the positive orthant.
+  // Search over directions among the changed parameters, by their angles in the positive orthant.
   void Turn() {
     std::vector<std::size_t> changed;
     for (std::size_t i = 0; i < best_.size(); ++i) {
@@ -170,7 +170,7 @@ class Search {
       Call& self = *static_cast<Call*>(data);
       try {
         return self.norm(x);
-      } catch (...) {  // nothing may be thrown through C
+      } catch (...) {  // no exception may pass through C
         self.error = std::current_exception();
         nlopt_force_stop(self.self);
         return 0.0;

@@ -1,9 +1,9 @@
 // Search for the mildest combination of stresses that breaks a system, without derivatives.
 //
-// A combination is a point of [0, 1]^n, 0 the mildest value of each parameter and 1 the most severe; its mildness is its
-// Euclidean norm. Along a direction the norm at which the system breaks is found by bisection; directions are searched by
-// Nelder and Mead's simplex on subspaces (Rowan, "Functional stability analysis of numerical algorithms", 1990; NLopt's
-// SBPLX). Parameters without which it breaks as well go back to 0.
+// A combination is a point of [0, 1]^n, 0 the mildest value of each parameter and 1 the most severe; its mildness is
+// its Euclidean norm. Along a direction the norm at which the system breaks is found by bisection; directions are
+// searched by Nelder and Mead's simplex on subspaces (Rowan, "Functional stability analysis of numerical algorithms",
+// 1990; NLopt's SBPLX). Parameters that are not needed to break the system are set back to 0.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace vobench::breaking {
 
 using Combination = std::vector<double>;
-// Whether the system breaks. Each call is an evaluation; a point of the grid is asked for once.
+// Whether the system breaks. Each call is an evaluation; a point of the grid is evaluated once.
 using Breaks = std::function<bool(const Combination&)>;
 
 struct AttackOptions {

@@ -40,7 +40,7 @@ std::optional<double> Evaluate(const std::string& text, double x) {
   }
 }
 
-// With the number in the place of each "$x" and "$(...)"; none where one of them is not understood, or there is none.
+// Replaces each "$x" and "$(...)" by the number; none where one of them is invalid, or there is none.
 std::optional<std::string> Fill(const std::string& text, double x) {
   std::string filled;
   std::size_t from = 0;

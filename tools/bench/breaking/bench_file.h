@@ -16,14 +16,14 @@ struct Scale {
   std::string name, unit;
   double mild = 0, severe = 1;
   bool logarithmic = false;
-  std::string limit;  // why it cannot be more severe; empty: the range ends for no such reason
+  std::string limit;  // why it cannot be more severe; empty: no hard limit
 
-  // At a share of the way; and as text: "12.3 ms".
+  // Value at a fraction of the range; and as text: "12.3 ms".
   double At(double share) const;
   std::string Text(double value) const;
 };
 
-// A number that makes a scenario harder. `set` are settings with "$x", or "$(A op x)" with one of + - * /, for it.
+// Parameter that makes a scenario harder. `set` are settings with "$x", or "$(A op x)" with one of + - * /, for it.
 struct Stress : Scale {
   std::filesystem::path file;  // of its scenario
   campaign::Changes base;      // that the scenario begins with
@@ -35,7 +35,7 @@ struct AccuracyScenario {
   std::string name;
   std::filesystem::path file;
   campaign::Changes set;
-  bool there = true;  // what it `needs` is there
+  bool there = true;  // whether the file that it `needs` exists
 };
 
 struct BenchFile {

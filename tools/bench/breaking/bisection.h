@@ -13,9 +13,9 @@ struct StepRuns {
   int runs = 0, broken = 0;
 };
 
-// The doses of the next round: both ends first; then the middle between the last step at which less than half of the runs
-// are broken and the first at which half or more are, of shares made monotone. None when these are neighbours, or the
-// stress has no breaking point between its ends.
+// The doses of the next round: both ends first; then the middle between the last step at which less than half of the
+// runs are broken and the first at which half or more are, of shares made monotone. None when these are neighbours, or
+// the stress has no breaking point between its ends.
 std::vector<int> NextSteps(const std::vector<StepRuns>& done, int steps);
 
 struct Breaking {
@@ -24,9 +24,9 @@ struct Breaking {
   double at = 0, low = 0, high = 1;  // as shares of the way from the mildest (0) to the most severe (1)
 };
 
-// The logistic fit with its 90 % interval, never narrower than the steps about the breaking point are apart and cut at
-// the ends. Where half of the runs are broken at the mildest, or less than half at the most severe, that is the result,
-// and the interval says how far the breaking point may be inside. None without runs.
+// The logistic fit with its 90 % interval, never narrower than the spacing of the steps about the breaking point and
+// clipped to the ends. Where half of the runs are broken at the mildest, or less than half at the most severe, the
+// result is that end, and the interval bounds the breaking point's distance inside. None without runs.
 std::optional<Breaking> FindBreaking(const std::vector<StepRuns>& done, int steps);
 
 }  // namespace vobench::breaking

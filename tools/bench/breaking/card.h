@@ -11,7 +11,7 @@
 
 namespace vobench::breaking {
 
-// Medians over runs that are not lost; none without.
+// Medians over runs that are not lost; none if all are lost.
 struct AccuracyResult {
   std::string scenario;
   int runs = 0, lost = 0;
@@ -23,7 +23,7 @@ struct StressResult : Scale {
   std::optional<Breaking> breaking;
 };
 
-// What differs from run to run: medians over runs.
+// Costs that vary from run to run: medians over runs.
 struct Cost {
   double tracking_s = 0, memory_mb = 0;
 };
@@ -40,7 +40,7 @@ struct Card {
 // "12 ms [10 ms to 15 ms]", "broken at 1 ms, the mildest", "not broken at 33 ms, its limit: the frame interval".
 std::string BreakingText(const StressResult& stress);
 
-// Reading throws std::invalid_argument where it is no card.
+// Reading throws std::invalid_argument for invalid text.
 std::string ToJson(const Card& card);
 Card CardFromJson(const std::string& text);
 

@@ -137,7 +137,7 @@ class Run {
     if (!records.empty()) cost_ = CostOf(options_.output / "accuracy", records.size());
   }
 
-  // Whether there was anything to do.
+  // One round; whether there was anything to run.
   bool Round(int round) {
     struct Place {
       std::size_t stress;
@@ -149,7 +149,7 @@ class Run {
       const Stress& stress = bench_.stresses[s];
       for (const int step : NextSteps(card_.stresses[s].done, bench_.steps)) {
         const double dose = stress.At(1.0 * step / bench_.steps);
-        // Each dose has worlds of its own, so that all runs are independent.
+        // Each dose has its own worlds, so that all runs are independent.
         for (int seed = step * bench_.seeds + 1; seed <= (step + 1) * bench_.seeds; ++seed) {
           Cell cell{fmt::format("{}, {}, {}", stress.name, stress.Text(dose), seed), stress.file, stress.base};
           const campaign::Changes set = stress.SettingsAt(dose);

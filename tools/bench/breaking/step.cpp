@@ -74,7 +74,7 @@ std::vector<campaign::TaskRecord> Steps::Run(const std::string& name, const std:
     RunCampaign(campaign);
   } catch (const BadInput&) {
     throw;
-  } catch (const std::runtime_error&) {  // all that could be done is done
+  } catch (const std::runtime_error&) {  // partial results are used
     for (std::size_t task = 0; task < cells.size() * static_cast<std::size_t>(seeds); ++task) {
       const auto record = campaign::ReadRecord(folder, static_cast<std::int64_t>(task));
       if (!record || (record->status == campaign::Status::failed && !record->reason.starts_with("frame "))) throw;

@@ -1,4 +1,4 @@
-// A step of the bench: some scenarios with settings and one system, as a campaign of its own in OUT.
+// Step of the bench: some scenarios with settings and one system, run as a separate campaign in OUT.
 #pragma once
 
 #include <filesystem>
@@ -25,9 +25,9 @@ class Steps {
 
   const std::string& system() const { return name_; }  // as tables have it
 
-  // Writes OUT/NAME.yaml, runs the campaign into OUT/NAME, and reads its results in the order of cells, then seeds. What
-  // was done by an earlier start is not done again. Throws as RunCampaign, but for failures of our own odometry at a frame:
-  // these are broken runs, as others' crashes are.
+  // Writes OUT/NAME.yaml, runs the campaign into OUT/NAME, and reads its results in the order of cells, then seeds.
+  // Results of an earlier run are reused. Throws as RunCampaign, but for failures of our own odometry at a frame: these
+  // are broken runs, as crashes of external systems are.
   std::vector<campaign::TaskRecord> Run(const std::string& name, const std::vector<Cell>& cells, int seeds) const;
 
   bool IsBroken(const campaign::TaskRecord& record) const;
@@ -40,9 +40,10 @@ class Steps {
   bool keyframes_ = false;
 };
 
-// `vobench bench --attack`: the search of attack_search.h, each evaluation a campaign OUT/trials/..., whose majority of
-// worlds says whether a combination breaks the system. What is found is run in ten other worlds, and made more severe until
-// nine of them are broken. Prints it, and writes attack.yaml, a campaign that reproduces it, and attack.json.
+// `vobench bench --attack`: the search of attack_search.h, each evaluation a campaign OUT/trials/..., in which a
+// combination breaks the system where it does so in the majority of worlds. The result is run in ten other worlds, and
+// made more severe until nine of them are broken. Prints it, and writes attack.yaml, a campaign that reproduces it, and
+// attack.json.
 void RunAttack(const BenchOptions& options, const BenchFile& bench);
 
 }  // namespace vobench::breaking

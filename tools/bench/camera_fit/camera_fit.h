@@ -26,8 +26,9 @@ struct Pair {
 };
 Pair MakePair(const cv::Mat& picture, const cv::Mat& next);
 
-// By range of 20 codes, from the flattest 16 x 16 blocks by the gradient of the blurred picture: a twentieth of them,
-// or a quarter of those that move by whole pixels (to 0.15), in the difference of both pictures: the smaller.
+// Noise by range of 20 codes: the smaller of two estimates, from the flattest 16 x 16 blocks by the gradient of the
+// blurred picture (a twentieth of them), and from the difference of both pictures over a quarter of the blocks that
+// move by whole pixels (to 0.15).
 struct NoiseLevel {
   double code = 0;
   double sigma = 0;  // median over blocks, after (1, -2, 1) x (1, -2, 1) / 6, which keeps that of white noise

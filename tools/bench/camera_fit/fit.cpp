@@ -30,7 +30,7 @@ cv::Mat Capture(const sim::SensorParams& sensor, sim::RadianceImage radiance, st
   return cv::Mat(kHeight, kWidth, CV_8UC(image.channels), image.data.data()).clone();  // grey: red and blue are alike
 }
 
-// Of a flat at the code, after it came through the sensor.
+// Noise of a flat at the code, through the sensor.
 NoiseStatistics FlatAt(const sim::SensorParams& sensor, double code) {
   const auto light = static_cast<float>(LinearOf(sensor)[static_cast<std::size_t>(std::lround(code))]);
   const sim::RadianceImage flat{kWidth, kHeight, std::vector<float>(std::size_t{3} * kWidth * kHeight, light)};
@@ -69,7 +69,7 @@ double FitNoise(const std::vector<NoiseLevel>& levels, sim::SensorParams& sensor
     const double v = std::pow(levels[i].sigma * std::max(1e-6, linear[code + 3] - linear[code - 3]) / 6, 2);
     A.row(static_cast<Eigen::Index>(i)) << linear[code] / v, 1 / v;
   }
-  // Textures add to the noise: what is far above the model is left out, as long as half of it remains.
+  // Textures add to the noise: levels far above the model are left out, as long as half of them remain.
   Eigen::Vector2d x;
   Eigen::ArrayXd kept = Eigen::ArrayXd::Ones(A.rows()), misfit;
   for (int round = 0; round < 4; ++round) {
@@ -87,7 +87,7 @@ double FitNoise(const std::vector<NoiseLevel>& levels, sim::SensorParams& sensor
   return std::sqrt((kept * misfit.square()).sum() / kept.sum());
 }
 
-// sRGB; or linear, where that alone explains the noise; or sRGB with toe and shoulder, where they do so clearly better.
+// sRGB; or linear, where that alone explains the noise; or sRGB with toe and shoulder, where these fit clearly better.
 double FitResponse(const std::vector<NoiseLevel>& levels, sim::SensorParams& sensor) {
   double best = 1e9, good = 0.08;
   const auto attempt = [&](sim::Response response, double toe, double shoulder, double enough) {
@@ -104,7 +104,7 @@ double FitResponse(const std::vector<NoiseLevel>& levels, sim::SensorParams& sen
   return best;
 }
 
-// The value of a setting, by halving, at which a statistic that grows with it is as measured.
+// Bisection of a setting for the measured value of a statistic that increases with it.
 void Solve(double& setting, double most, double measured, const std::function<double()>& statistic) {
   double low = 0, high = most;
   for (int i = 0; i < 8; ++i) {
@@ -125,7 +125,7 @@ double SigmaAt(const sim::SensorParams& sensor, double code) {
 }  // namespace
 
 CameraFit FitCamera(const Recording& recording) {
-  constexpr double kHalo = 0.05, kCorrelation = 0.12;  // by which more is seen than textures and chance show
+  constexpr double kHalo = 0.05, kCorrelation = 0.12;  // thresholds above the effect of textures and chance
   CameraFit fit;
   sim::SensorParams& s = fit.sensor;
   sim::ProcessingParams& p = s.processing;
@@ -159,7 +159,7 @@ CameraFit FitCamera(const Recording& recording) {
       if (shown > 0 && unprocessed > 0) before[i].sigma = fit.noise.levels[i].sigma * unprocessed / shown;
     }
   }
-  if (fit.noise_misfit > 0.25 || p.denoise_sigma_px > 1.9) {  // other noise than the model's, as of compressed pictures
+  if (fit.noise_misfit > 0.25 || p.denoise_sigma_px > 1.9) {  // noise unlike the model's, as of compressed pictures
     fit.noise_known = false;
     s.processing = {.sharpen_bright = p.sharpen_bright, .sharpen_dark = p.sharpen_dark, .sharpen_sigma_px = 1.5};
     s.response = sim::Response::srgb;

@@ -154,7 +154,7 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
   Section root = document_.root();
   std::vector<ExternalSystem> external;
   std::string file;
-  bool unread = false;  // what is wrong there has been said
+  bool unread = false;  // its problem has been reported
   if (root.Read("external", file)) {
     try {
       external = ReadExternalSystems(folder / file);
@@ -197,8 +197,8 @@ void CampaignFile::ReadSystems(const std::filesystem::path& folder) {
   }
 }
 
-// Beside other people's systems each of ours that is given its scenario's settings has a twin that knows what they do,
-// before it. Not where the entry says itself what it knows.
+// Beside external systems each of ours with settings of its scenario is preceded by a twin restricted to images and
+// calibration. Not where the entry states its information itself.
 void CampaignFile::AddImagesAlone() {
   const auto others = [](const SystemEntry& entry) { return entry.system.empty(); };
   const bool beside_others = std::ranges::any_of(campaign_.systems, others);
@@ -243,7 +243,7 @@ void CampaignFile::ReadSeeds() {
     }
   }
   if (ranges.empty()) root.Reject("seeds", "'seeds': at least one is needed");
-  if (count > kMostSeeds) {  // before they are written out: a few lines may ask for more than memory holds
+  if (count > kMostSeeds) {  // checked before they are listed: a few lines may need more than the memory
     root.Reject("seeds", fmt::format("'seeds': {} of them, more than the {} of one campaign", count, kMostSeeds));
     return;
   }
@@ -305,7 +305,7 @@ void CampaignFile::Reject(const TaskChoice& choice, const std::string& key, cons
   };
   const SystemEntry& system = campaign_.systems[choice.system];
   const ScenarioEntry& scenario = campaign_.scenarios[choice.scenario];
-  if (scenario.file.empty()) return;  // that has been said
+  if (scenario.file.empty()) return;  // already reported
   const std::string text = key.empty() || message.starts_with("'" + key) ? message : "'" + key + "': " + message;
   const auto reject = [&](Section& section, const std::string& where) {
     if (rejected_.emplace(&section, where, text).second) section.Reject(where, text);

@@ -1,4 +1,4 @@
-// Reader of campaign.yaml, strict, with the place of each setting for problems that others find.
+// Reader of campaign.yaml, strict; keeps the place of each setting for problems found elsewhere.
 #pragma once
 
 #include <filesystem>
@@ -19,13 +19,13 @@ std::vector<CurveSpec> ReadCurves(settings::Section root, const Campaign& campai
 
 class CampaignFile {
  public:
-  // Files named in it are relative to its folder; `systems` are the names of ours, `images_alone` what sets one of ours
-  // that knows no more than others. Throws settings::Error only where it cannot be read as YAML at all; other problems
-  // wait for ThrowIfBad.
+  // Files named in it are relative to its folder; `systems` are the names of our systems, `images_alone` the settings
+  // of such a system with the information of an external one. Throws settings::Error only where the file is not valid
+  // YAML; other problems wait for ThrowIfBad.
   CampaignFile(const std::filesystem::path& file, std::vector<std::string> systems, Changes images_alone = {});
 
   const Campaign& campaign() const { return campaign_; }
-  // Whether enough of it is good that its points can be asked for.
+  // Whether enough of it is valid for its points to be enumerated.
   bool complete() const;
 
   // A problem with a setting of this choice (`key` as in ChangesAt), at the place where the campaign sets it, or else

@@ -22,7 +22,7 @@ constexpr double kGrace_s = 3;       // from SIGTERM to SIGKILL
 constexpr int kNotStarted = 127;     // exit statuses, as shells have them
 constexpr int kEndedBySignal = 128;  // and which
 
-// That the leader is to end the group. No SIGTERM: `kill 0` in a script is meant for its own.
+// Signal for the leader to end the group. Not SIGTERM: `kill 0` in a script addresses its own processes.
 int StopSignal() { return SIGRTMIN; }
 
 [[noreturn]] void Become(const std::string& command, const std::filesystem::path& folder, int log) {
@@ -36,11 +36,11 @@ int StopSignal() { return SIGRTMIN; }
   _exit(kNotStarted);
 }
 
-// Between the caller and sh, first of their group, with all signals blocked. It ends as sh does; when the caller says
-// stop, or dies, however that may be, it asks the group to end, and then kills it and itself.
+// Leader of the process group, between the caller and sh, with all signals blocked. It ends as sh does; when the caller
+// signals it, or has ended for whatever reason, it sends SIGTERM to the group, and then kills it and itself.
 [[noreturn]] void Lead(const std::string& command, const std::filesystem::path& folder, int log) {
   setpgid(0, 0);
-  prctl(PR_SET_CHILD_SUBREAPER, 1);  // to know when those without a parent have ended, too
+  prctl(PR_SET_CHILD_SUBREAPER, 1);  // to be notified of the end of orphans, too
   const pid_t shell = base::ForkTied(SIGKILL);
   if (shell < 0) _exit(kNotStarted);
   if (shell == 0) Become(command, folder, log);
@@ -71,7 +71,7 @@ pid_t StartLeader(const std::string& command, const std::filesystem::path& folde
   const pid_t leader = base::ForkTied(StopSignal());
   if (leader == 0) Lead(command, folder, *file);
   if (leader < 0) fail("cannot start a process");
-  setpgid(leader, leader);  // both sides say so: whichever comes first
+  setpgid(leader, leader);  // called by both processes: whichever comes first
   return leader;
 }
 
@@ -84,7 +84,7 @@ CommandEnd RunCommand(const std::string& command, const std::filesystem::path& f
   const sigset_t child_ends = base::SignalSet({SIGCHLD});
   const base::SignalBlock blocked(child_ends);
   CommandEnd end;
-  // WNOWAIT: while it is not waited for, its number and its group's belong to nobody else.
+  // WNOWAIT: until it is reaped, its process id and its group's cannot be reused.
   siginfo_t info{};
   while (waitid(P_PID, static_cast<id_t>(leader), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == 0) {
     end.timed_out = Clock::now() >= limit;

@@ -12,8 +12,8 @@ struct CommandEnd {
   int status = 0;  // its exit status otherwise
 };
 
-// Starts `command` in `folder`. When it ends, what it leaves behind in its group is killed. When its time is over, or
-// this process dies (of SIGKILL, too), the group is sent SIGTERM, and three seconds later killed. Throws
+// Starts `command` in `folder`. When it ends, remaining processes of its group are killed. At the time-out, or when
+// this process dies (by SIGKILL, too), the group is sent SIGTERM, and three seconds later SIGKILL. Throws
 // std::runtime_error when it cannot be started at all.
 CommandEnd RunCommand(const std::string& command, const std::filesystem::path& folder, const std::filesystem::path& log,
                       double timeout_s);

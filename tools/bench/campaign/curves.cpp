@@ -76,7 +76,7 @@ void MakeCurvesOf(const Campaign& campaign, const CurveSpec& spec, const std::ve
   }
 }
 
-// Nothing where there is no number; inf (or -inf) of lost runs.
+// Empty for NaN; inf (or -inf) of lost runs.
 std::string Field(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
 
 std::string EndField(const Crossing& crossing) {

@@ -40,7 +40,7 @@ std::string CurvesMarkdown(const std::vector<Curve>& curves);
 
 // In the unit of the file: "12.5 ms"; "<= 1 ms" and "> 32 ms" (or >= and <, where smaller is harder) at the ends.
 std::string DoseText(const Curve& curve, const evaluation::Crossing& crossing);
-// What it takes for a run to be broken: "lost, or ATE above 0.05 m".
+// Criterion of a broken run: "lost, or ATE above 0.05 m".
 std::string BrokenMeans(const CurveSpec& spec);
 
 }  // namespace vobench::campaign

@@ -38,7 +38,7 @@ std::string NameIn(const std::vector<std::pair<std::string, T>>& names, T value)
   return std::ranges::find(names, value, &std::pair<std::string, T>::second)->first;
 }
 
-// A word in braces, or what stands between two such. Braces around anything else, and behind $, are sh's own.
+// A word in braces, or the text between two such. Braces around anything else, and behind $, are sh's own.
 struct Piece {
   std::string text;  // without the braces
   bool is_placeholder = false;
@@ -78,7 +78,7 @@ void CheckPlaceholders(settings::Section& section, const ExternalSystem& system,
   }
 }
 
-// What it takes, and how it is judged: a metric one never by Sim(3).
+// Sensors and alignment of a system: never Sim(3) for a metric one.
 void ReadSensors(settings::Section& section, ExternalSystem& system) {
   using evaluation::Alignment;
   const Sensors& sensors = system.sensors;
@@ -120,7 +120,7 @@ bool IsExecutable(const std::filesystem::path& file) {
   return std::filesystem::is_regular_file(file) && access(file.c_str(), X_OK) == 0;
 }
 
-// As sh finds it; empty where it does not.
+// Path by sh's search; empty where there is none.
 std::filesystem::path PathOfProgram(const std::string& word) {
   if (word.find('/') != std::string::npos) return std::filesystem::path(IsExecutable(word) ? word : "");
   const char* path = std::getenv("PATH");
@@ -132,8 +132,8 @@ std::filesystem::path PathOfProgram(const std::string& word) {
 
 constexpr const char* kOfShell = "$`(){}=<>!";  // a word with one of these is sh's own
 
-// The script that an interpreter is given, as the command writes it, where it is a path to no file. A relative one
-// counts from the empty folder of the run; not behind `cd`.
+// An interpreter's script, as written in the command, where that path does not exist. A relative one is resolved from
+// the empty folder of the run; not behind `cd`.
 std::string MissingScript(const ExternalSystem& system) {
   static const std::regex interpreter("(.*/)?(python|perl|ruby|node|julia|Rscript|octave|(ba|da|z)?sh)[0-9.]*");
   static const std::regex script(".*/.*[.](py|sh|pl|rb|js|mjs|jl|R|m)");

@@ -18,7 +18,7 @@ enum class SequenceLayout {
 
 enum class CalibrationFormat { none, camera_yaml, orb_slam2, orb_slam3, dso, svo, lsd_slam };
 
-// What is given beside the pictures of the first camera.
+// Sensors beside the first camera.
 struct Sensors {
   bool stereo = false, imu = false;
   bool metric() const { return stereo || imu; }  // the scale is known
@@ -33,11 +33,11 @@ std::string Name(CalibrationFormat format);
 struct ExternalSystem {
   std::string name;
   // For sh, in an empty folder of its own. {sequence}, {calibration}, {configs}, {trajectory}, {seed}, {here} (the
-  // folder of systems.yaml) and the variables stand for what they say, quoted.
+  // folder of systems.yaml) and the variables are replaced by their values, quoted.
   std::string command;
   std::vector<std::pair<std::string, std::string>> variables;
   Sensors sensors;
-  std::string configs;  // a command alike that writes configuration files into {configs} before; empty: none
+  std::string configs;  // such a command that first writes configuration files into {configs}; empty: none
   SequenceLayout layout = SequenceLayout::tum;
   CalibrationFormat calibration = CalibrationFormat::none;
   bool rectified = false;                     // pictures and calibration of a pinhole
@@ -45,9 +45,9 @@ struct ExternalSystem {
   bool poses_of_imu = false;                  // T_WI instead
   evaluation::Alignment align = evaluation::Alignment::sim3;  // of a metric one: se3, or yaw where z is up in its world
   double timeout_s = 3600;
-  bool keyframes = false;                    // it writes these alone: judged at their stamps, and named so in tables
-  bool accepts_any_exit = false;             // a trajectory counts whatever the exit status is
-  int threads = 1;                           // that it keeps busy, of those of `--jobs`
+  bool keyframes = false;         // it writes key frames only: evaluated at their stamps, and marked in tables
+  bool accepts_any_exit = false;  // a trajectory counts whatever the exit status is
+  int threads = 1;                // that it keeps busy, of those of `--jobs`
   std::vector<std::filesystem::path> files;  // whose bytes are part of it, beside those that the command names
   std::string programs;                      // DigestOfPrograms
 };
@@ -55,19 +55,19 @@ struct ExternalSystem {
 // The entries, in order. Throws settings::Error with every problem: a repeated name, an unknown placeholder.
 std::vector<ExternalSystem> ReadExternalSystems(const std::filesystem::path& file);
 
-// What a placeholder stands for is put in its place, quoted for sh.
+// The command with each placeholder replaced by its value, quoted for sh.
 std::string FillIn(const std::string& command, const std::vector<std::pair<std::string, std::string>>& values);
 
 // "name", or "name (key frames)": in tables.
 std::string Label(const ExternalSystem& system, const std::string& name);
 
 // Why sh could not start the command here, or its interpreter not find the script; empty where they can, or where that
-// cannot be known before.
+// cannot be decided in advance.
 std::string StartProblem(const ExternalSystem& system);
 
-// Of the bytes of `files` and of each file that the command names.
+// Digest of the bytes of `files` and of each file that the command names.
 std::string DigestOfPrograms(const ExternalSystem& system);
-// All that an answer depends on, as one text.
+// All inputs that an answer depends on, as one text.
 std::string Description(const ExternalSystem& system);
 
 }  // namespace vobench::campaign

@@ -15,8 +15,8 @@ class FileLock {
  public:
   enum class Kind { shared = LOCK_SH, exclusive = LOCK_EX };
 
-  // None when another process holds it. The file is made where it is not there; a folder must be there. Programs that
-  // are started do not inherit it; forked processes do. Throws std::runtime_error where there can be no lock.
+  // None when another process holds it. A missing file is created; a folder must exist. Executed programs do not
+  // inherit the lock; forked processes do. Throws std::runtime_error where there can be no lock.
   static std::optional<FileLock> Try(const std::filesystem::path& path, Kind kind);
   // Waits for it.
   static FileLock Wait(const std::filesystem::path& path, Kind kind);

@@ -15,7 +15,7 @@
 namespace vobench::campaign {
 namespace {
 
-// A sequence that is not there, and the tasks that need it.
+// A missing sequence, and the tasks that need it.
 struct Rendering {
   std::size_t point = 0;  // one of those that show it
   std::vector<std::int64_t> tasks;
@@ -54,8 +54,8 @@ class LocalRun {
   }
 
  private:
-  // Sequences first: afterwards every process has something to do. The last of them are rendered by several threads
-  // where there is nothing else.
+  // Starts one process, sequences first: tasks then keep all processes busy. The last sequences are rendered by several
+  // threads where nothing else is to be done.
   bool StartOne() {
     const int free = share_.processes - busy_;
     if (free <= 0) return false;

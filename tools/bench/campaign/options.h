@@ -9,8 +9,8 @@
 
 namespace vobench {
 
-// Scenarios x variants x systems x seeds (docs/campaign.md). Throws std::runtime_error after all else is done and
-// written when tasks failed.
+// Scenarios x variants x systems x seeds (docs/campaign.md). When tasks failed, throws std::runtime_error after all
+// else is done and written.
 struct CampaignOptions {
   std::filesystem::path file;
   std::filesystem::path output;
@@ -20,8 +20,8 @@ struct CampaignOptions {
   std::uint64_t memory_bytes = 0;              // of each; 0: an equal part of what the machine has left
   double timeout_s = 0;                        // of a task; 0: none
   bool dry_run = false;                        // tasks are listed only
-  bool update = false;                         // results of other settings may go
-  std::vector<std::string> redo;               // systems whose results go
+  bool update = false;                         // results of other settings may be removed
+  std::vector<std::string> redo;               // systems whose results are removed
   std::optional<std::int64_t> task;            // that one alone, again
   std::optional<std::filesystem::path> list;   // those in line `part` of this file
   int part = 0;

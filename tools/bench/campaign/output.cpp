@@ -36,7 +36,7 @@ std::string TimesLine(const fs::path& out, std::int64_t task) {
   return line + "\n";
 }
 
-// Whether there is anything that a campaign does not begin with.
+// Whether the folder contains anything else than the files of a new campaign.
 bool HasOthers(const fs::path& out) {
   static const std::set<std::string> kOurs = {".lock", "tasks", "cache", "slurm"};
   return std::any_of(fs::directory_iterator(out), {}, [](const fs::directory_entry& entry) {
@@ -51,8 +51,7 @@ void PrepareOutput(const fs::path& out, const std::string& text) {
   fs::create_directories(out);
   const fs::path record = out / "campaign.json";
   if (fs::exists(record)) return;
-  // Another process may begin the same campaign at the same time: what is in the way is its own if the record is there
-  // now.
+  // Another process may begin the same campaign at the same time: the obstacle is its own record if that exists now.
   if (HasOthers(out) && !fs::exists(record)) {
     throw BadInput(fmt::format("{}: is no campaign's folder (it has no campaign.json) and not empty", out.string()));
   }
@@ -87,7 +86,7 @@ std::optional<TaskRecord> ReadRecord(const fs::path& out, std::int64_t task) {
 TaskFolder::TaskFolder(const fs::path& out, std::int64_t task) : final_(TaskPath(out, task)) {
   hidden_ = final_.parent_path() / fmt::format(".{}.partial", final_.filename().string());
   try {
-    do {  // whoever had it before may just have given it its name
+    do {  // the previous owner may just have renamed it
       fs::create_directories(hidden_);
       lock_ = FileLock::Try(hidden_, FileLock::Kind::exclusive);
       if (!lock_) throw std::runtime_error("another process is at work on this task");
@@ -152,7 +151,7 @@ void Renumber(const fs::path& out, const std::vector<std::string>& keys) {
         static_cast<std::size_t>(task) < keys.size() && record && keys[static_cast<std::size_t>(task)] == record->key;
     if (at == wanted.end() || right || record->status == Status::failed) continue;
     fs::create_directories(moved);
-    std::error_code taken;  // the same result, from a start that was cut short
+    std::error_code taken;  // the same result, from an interrupted start
     fs::rename(TaskPath(out, task), moved / record->key, taken);
   }
   if (!fs::exists(moved)) return;
@@ -216,7 +215,7 @@ Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, c
                   base::Writers::many);
   base::WriteFile(out / "tables.tex", Latex(merged.tables), base::Writers::many);
   if (merged.curves.empty()) {
-    fs::remove(out / "curves.csv");  // of a file that asked for some
+    fs::remove(out / "curves.csv");  // of a file with curves
   } else {
     base::WriteFile(out / "curves.csv", CurvesCsv(merged.curves), base::Writers::many);
   }

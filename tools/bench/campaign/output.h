@@ -15,12 +15,12 @@
 
 namespace vobench::campaign {
 
-// Makes the folder, and the mark that says what it is: campaign.json, with `text` where it is new. Throws BadInput
-// where there is something else's folder, std::runtime_error.
+// Makes the folder and its marker, campaign.json, with `text` where it is new. Throws BadInput where the folder is
+// another program's, std::runtime_error.
 void PrepareOutput(const std::filesystem::path& out, const std::string& text);
 
-// Single tasks share the folder, a whole campaign has it for itself. A killed one's processes are given a moment to
-// end. Throws std::runtime_error when another one is at work.
+// Shared by single tasks, exclusive for a whole campaign. Waits a moment for processes of a killed campaign to end.
+// Throws std::runtime_error when another campaign is running.
 FileLock LockOutput(const std::filesystem::path& out, FileLock::Kind kind);
 
 // OUT/tasks/00/000123
@@ -29,8 +29,8 @@ std::filesystem::path TaskPath(const std::filesystem::path& out, std::int64_t ta
 // task.json of a task; none where there is none or it cannot be read: the task is done again.
 std::optional<TaskRecord> ReadRecord(const std::filesystem::path& out, std::int64_t task);
 
-// Takes the task for this process, and makes the folder to write in. A kill leaves it under its hidden name; whoever
-// takes the task next begins with an empty one.
+// Lock of a task for this process, and its folder to write in. A killed process leaves the folder under its hidden
+// name; the next one begins with an empty folder.
 class TaskFolder {
  public:
   // Throws std::runtime_error when it cannot be made, and when another process is at work on this task.
@@ -42,7 +42,7 @@ class TaskFolder {
 
   const std::filesystem::path& path() const { return hidden_; }
 
-  // Writes task.json and gives the folder its name; an older one of that name goes. Throws std::runtime_error.
+  // Writes task.json and renames the folder to its final name; replaces an older one. Throws std::runtime_error.
   void Commit(const TaskRecord& record);
 
  private:
@@ -59,26 +59,26 @@ struct OutputState {
   std::vector<std::int64_t> stale;    // of other settings, another program, or beyond the last task
 };
 
-// Results of these keys that lie at other tasks' numbers, as after a system was added, go to theirs. For who has the
-// folder alone. What is cut short is completed by the next call.
+// Moves results whose keys belong to other tasks' numbers, as after a system was added, to those numbers. Needs the
+// exclusive lock. An interrupted call is completed by the next one.
 void Renumber(const std::filesystem::path& out, const std::vector<std::string>& keys);
 
 // keys[k]: what task k's result must depend on.
 OutputState Inspect(const std::filesystem::path& out, const std::vector<std::string>& keys);
 
-// Of these tasks those that have failed; what others may have done in the meantime stays.
+// Removes those of these tasks that have failed; results written by others in the meantime stay.
 void RemoveFailed(const std::filesystem::path& out, const std::vector<std::int64_t>& tasks);
 
-// What all tasks together say.
+// Results of all tasks together.
 struct Merged {
   std::vector<TaskRecord> records;  // in order, lost ones by the campaign's rule
   std::vector<Table> tables;
   std::vector<Curve> curves;
 };
 
-// Writes results.csv, times.csv, tables.md, tables.tex, and curves.csv where the campaign asks for curves, from the
-// tasks' folders alone; names and levels are the campaign's, whatever they were when a task ran. levels[p]: of point p.
-// All tasks must be there (std::runtime_error).
+// Writes results.csv, times.csv, tables.md, tables.tex, and curves.csv where the campaign has curves, from the tasks'
+// folders alone; names and levels are the campaign's present ones. levels[p]: of point p. Throws std::runtime_error
+// unless all tasks are present.
 Merged Merge(const Campaign& campaign, const std::vector<LevelValues>& levels, const std::filesystem::path& out);
 
 }  // namespace vobench::campaign

@@ -28,7 +28,7 @@ std::vector<TextRow> Escaped(std::vector<TextRow> rows) {
   return rows;
 }
 
-// Over all tasks of a system that were answered, a lost one worse than any number.
+// Median over all answered tasks of a system, a lost one worse than any number.
 double MedianOf(const std::vector<TaskRecord>& records, const std::string& system, const std::string& metric) {
   const std::size_t index = MetricIndex(metric);
   std::vector<double> values;

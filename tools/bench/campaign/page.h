@@ -12,8 +12,8 @@
 
 namespace vobench::campaign {
 
-// A figure for each metric with medians, intervals and runs, and one with the share of runs broken and where half of
-// them have. Stress grows to the right; lost runs are on the upper edge (on the lower one where more is better).
+// A figure for each metric with medians, intervals and runs, and one with the share of broken runs and its crossing of
+// one half. Stress grows to the right; lost runs are on the upper edge (on the lower one where larger is better).
 std::vector<report::Figure> CurveFigures(const Curve& curve);
 
 // For readers: "lost" where it is infinite.

@@ -16,12 +16,12 @@
 
 namespace vobench::campaign {
 
-// Dotted keys with their values as YAML, a later one wins: what `--set` takes.
+// Dotted keys with their values as YAML, a later one wins: the arguments of `--set`.
 using Changes = std::vector<std::pair<std::string, std::string>>;
 
-// Frames of a sequence that was recorded.
+// Frames of a recorded sequence.
 struct RecordedFrames {
-  std::optional<std::string> camera;  // a preset, or a file; none: the sequence says
+  std::optional<std::string> camera;  // a preset, or a file; none: the sequence's own
   std::int64_t first = 0;
   std::optional<std::int64_t> count;  // none: all that follow
 };
@@ -48,25 +48,25 @@ struct Factor {
 
 struct SystemEntry {
   std::string name;
-  std::string system;       // one of ours; empty: somebody else's
+  std::string system;       // one of ours; empty: an external one
   Changes set;              // of odometry and prior
   ExternalSystem external;  // where system is empty
 };
 
-// A run is lost where it has a pose, or tracks, for less than these shares of the frames, or its error is larger.
+// Criterion of a lost run: poses, or tracking, for less than these shares of the frames, or a larger error.
 struct LostRule {
   double pose_coverage = 0.5;
   double tracked_coverage = 0.5;
   double error_m = 0;  // ATE after the alignment of the campaign; 0: however large
 };
 
-// Frames that are not judged: as if the sequence did not have them. Empty where until_s is not above from_s.
+// Frames excluded from evaluation, as if the sequence did not have them. Empty where until_s is not above from_s.
 struct Omitted {
   double from_s = 0, until_s = 0;
   bool empty() const { return !(until_s > from_s); }
 };
 
-// Somebody else's numbers, as they are printed elsewhere.
+// Published numbers of other authors.
 struct ReferenceColumn {
   std::string name;
   std::map<std::string, std::string> values;  // by the level of the table's only row name; "-" where there is none
@@ -92,8 +92,8 @@ struct CurveSpec {
   double break_error_m = 0;          // a run with a larger ate_m has broken, as a lost one has; 0: lost ones only
 };
 
-// What a task leaves beside task.json and times.json: nothing; metrics.json and estimate.txt; covariance.txt,
-// frames.csv and the truth, too.
+// Files of a task beside task.json and times.json: none; metrics.json and estimate.txt; covariance.txt, frames.csv and
+// the truth, too.
 enum class Keep { numbers, estimate, all };
 
 struct Campaign {
@@ -111,12 +111,12 @@ struct Campaign {
   std::string resolved;  // all of it, defaults included, as JSON
 };
 
-// By which the errors of a system are taken: the campaign's, but of a metric one its own in the place of Sim(3).
+// Alignment for the errors of a system: the campaign's, but for a metric system its own instead of Sim(3).
 evaluation::Alignment AlignmentOf(const Campaign& campaign, const SystemEntry& system);
 // Of its systems, each once, in their order.
 std::vector<evaluation::Alignment> AlignmentsOf(const Campaign& campaign);
 
-// What task k does.
+// Choice of task k.
 struct TaskChoice {
   std::size_t scenario = 0;
   std::vector<std::size_t> levels;  // one for each factor
@@ -129,16 +129,16 @@ struct TaskChoice {
 std::size_t Points(const Campaign& campaign);
 std::int64_t Tasks(const Campaign& campaign);
 
-// Digits of k, the slowest first: seed, scenario, factors in the order of the file, system. More seeds leave the
-// numbers of all tasks as they are. Throws std::out_of_range.
+// Digits of k, the slowest first: seed, scenario, factors in the order of the file, system. Adding seeds keeps the
+// numbers of all tasks. Throws std::out_of_range.
 TaskChoice ChoiceOf(const Campaign& campaign, std::int64_t task);
 
 // Settings of the scenario at a point, in the order in which they apply; and those of odometry and prior of a system.
 Changes ChangesAt(const Campaign& campaign, const TaskChoice& choice);
 
-// What is varied: "scenario" and the names of the factors.
+// Names of the varied settings: "scenario" and the factors.
 std::vector<std::string> VariedNames(const Campaign& campaign);
-// What a task has of each name ("scenario", "system" or that of a factor), as the file writes it.
+// Levels of a task by name ("scenario", "system" or a factor), as the file writes them.
 std::vector<std::string> LevelsOf(const Campaign& campaign, const std::vector<std::string>& names,
                                   const TaskChoice& choice);
 

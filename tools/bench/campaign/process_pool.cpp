@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kWorkFailed = 3;  // exit status
 
-// What counts for RLIMIT_DATA and is there already: the program's and its libraries' own. [bytes]
+// Memory counted by RLIMIT_DATA that is already in use: of the program and its libraries. [bytes]
 std::uint64_t DataNow() {
   std::ifstream stream("/proc/self/statm");
   std::uint64_t pages[6] = {};  // the last: data and stack
@@ -111,7 +111,7 @@ ProcessPool::~ProcessPool() {
 }
 
 void ProcessPool::Start(std::int64_t id, const ProcessLimits& limits, const std::function<void()>& work) {
-  std::fflush(nullptr);  // or both processes would write what waits
+  std::fflush(nullptr);  // or both processes would write the buffered output
   base::ChildProcess child([&](int answer) {
     running_.clear();  // closes the others' pipes
     SetLimits(limits);
@@ -156,7 +156,7 @@ std::optional<ProcessEnd> ProcessPool::Wait(std::chrono::milliseconds patience) 
 std::uint64_t AvailableMemory(const fs::path& root) {
   const std::uint64_t kilobytes = NumberOf("MemAvailable:", root / "proc/meminfo");
   std::uint64_t available = kilobytes == kUnknown ? kUnknown : kilobytes * 1024;
-  // A group may have no more than those that it is in.
+  // A group is also limited by the groups above it.
   for (fs::path group = OwnGroup(root);; group = group.parent_path()) {
     available = std::min(available, LeftIn(root / "sys/fs/cgroup" / group.relative_path()));
     if (!group.has_relative_path()) return available;

@@ -23,18 +23,18 @@ struct ProcessLimits {
 struct ProcessEnd {
   std::int64_t id = 0;
   std::string problem;       // empty: its work was done
-  bool work_failed = false;  // it threw, and nothing that says that its input is wrong (std::invalid_argument)
+  bool work_failed = false;  // it threw something else than std::invalid_argument, which means invalid input
 };
 
 class ProcessPool {
  public:
   ProcessPool() = default;
-  // Kills what still runs, and waits for it and for the commands that it runs.
+  // Kills running processes, and waits for them and for the commands that they run.
   ~ProcessPool();
   ProcessPool(const ProcessPool&) = delete;
   ProcessPool& operator=(const ProcessPool&) = delete;
 
-  // Forks a process that does work(); what that throws is its problem. It dies with this one.
+  // Forks a process that runs work(); an exception of it becomes its problem. It is killed when this process ends.
   void Start(std::int64_t id, const ProcessLimits& limits, const std::function<void()>& work);
 
   // The next process that ends; none when that takes longer than `patience`. Kills those whose time is over.
@@ -57,8 +57,8 @@ class ProcessPool {
   std::vector<Running> running_;
 };
 
-// What can be had without swapping: of the machine, or of the control groups (v2) that this process is in. The files of
-// the system are below `root`. [bytes]
+// Memory available without swapping: of the machine, or of the control groups (v2) of this process. The files of the
+// system are below `root`. [bytes]
 std::uint64_t AvailableMemory(const std::filesystem::path& root = "/");
 
 struct Share {

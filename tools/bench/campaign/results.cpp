@@ -165,7 +165,7 @@ double ValueOf(const TaskRecord& record, std::size_t metric) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   if (record.status == Status::failed) return kNone;
   const std::string& name = MetricNames().at(metric);
-  if (name == "pose_coverage" || name == "tracked_coverage") {  // what says why a run is lost
+  if (name == "pose_coverage" || name == "tracked_coverage") {  // the reason of a lost run
     return record.status == Status::ok || record.status == Status::lost ? record.metric(metric).value_or(kNone) : 0;
   }
   if (record.status != Status::ok) return LargerIsBetter(name) ? -kInfinity : kInfinity;

@@ -16,10 +16,10 @@ namespace vobench::campaign {
 enum class Status {
   ok,
   lost,       // by the campaign's rule
-  crashed,    // somebody else's program: ended by a signal or with a status that is not 0
+  crashed,    // external program: ended by a signal or with a status that is not 0
   timed_out,  // the same, longer than its entry allows
-  no_answer,  // the same, without a trajectory that can be judged
-  failed,     // nothing was found out: the task is tried again by the next start
+  no_answer,  // the same, without a trajectory that can be evaluated
+  failed,     // no result: the task is tried again by the next start
 };
 
 std::string Name(Status status);
@@ -46,27 +46,27 @@ struct TaskRecord {
 const std::vector<std::string>& MetricNames();
 std::vector<std::optional<double>> MetricValues(const evaluation::Metrics& metrics, evaluation::Alignment align);
 
-// Of shares of what was answered; of everything else a smaller value is better.
+// True of shares of answered frames; of all other metrics a smaller value is better.
 bool LargerIsBetter(const std::string& metric);
 // Whether it depends on the alignment of a system: "ate_m", but not "ate_se3_m".
 bool IsAligned(const std::string& metric);
 // "m", "rad" or "s", with which the name ends; else "1".
 std::string UnitOf(const std::string& metric);
 
-// A run's value of a metric, by its place among MetricNames: worse than any number (infinite) where it is lost or has
-// no answer, NaN where there is none, or the task failed. Coverage is what it is, and 0 without an answer.
+// A run's value of a metric, by its index in MetricNames: infinite where it is lost or has no answer, NaN where there
+// is none, or the task failed. Coverage is unchanged, and 0 without an answer.
 double ValueOf(const TaskRecord& record, std::size_t metric);
-// The place; their number where there is no such metric.
+// Its index; the number of metrics where there is no such metric.
 std::size_t MetricIndex(const std::string& metric);
 
-// Why a task that was judged counts as lost; empty where it does not.
+// Why an evaluated task counts as lost; empty where it does not.
 std::string WhyLost(const TaskRecord& record, const LostRule& rule);
 
-// task.json. Reading throws std::invalid_argument where the text is not one.
+// task.json. Reading throws std::invalid_argument for invalid text.
 std::string ToJson(const TaskRecord& record);
 TaskRecord RecordFromJson(const std::string& text);
 
-// Those whose system is judged after this alignment.
+// The records whose system is evaluated after this alignment.
 std::vector<TaskRecord> Aligned(const Campaign& campaign, const std::vector<TaskRecord>& records,
                                 evaluation::Alignment alignment);
 

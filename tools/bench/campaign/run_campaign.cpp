@@ -1,4 +1,4 @@
-// Scenarios x varied settings x systems x seeds: each a task with a folder of its own; what is done is not done again.
+// Scenarios x varied settings x systems x seeds: each a task with a folder of its own; finished tasks are not repeated.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ std::vector<std::size_t> PointsOf(const Campaign& campaign, const std::vector<st
   return {points.begin(), points.end()};
 }
 
-// What will not go well of other people's systems, a line each.
+// Foreseeable problems of external systems, a line each.
 std::vector<std::string> Foreseen(const Campaign& campaign) {
   std::vector<std::string> problems;
   for (const SystemEntry& system : campaign.systems) {
@@ -75,7 +75,7 @@ void List(const CampaignWork& work) {
   if (!problems.empty()) throw BadInput(base::Join(problems, "\n"));
 }
 
-// All that a result consists of, but for the times.
+// All files of a result, without the times.
 std::map<std::string, std::string> FilesOf(const fs::path& folder) {
   std::map<std::string, std::string> files;
   if (!fs::exists(folder)) return files;
@@ -95,7 +95,7 @@ std::string ShortResult(const Campaign& campaign, const TaskRecord& record) {
   return text;
 }
 
-// One alone, whatever is there of it.
+// Runs one task alone, replacing its result.
 void RunAgain(CampaignWork& work, const CampaignOptions& options) {
   const std::int64_t task = *options.task;
   const TaskChoice choice = Input([&] { return ChoiceOf(work.campaign(), task); });
@@ -115,7 +115,7 @@ void RunAgain(CampaignWork& work, const CampaignOptions& options) {
   fmt::print("the same as before, byte for byte\n");
 }
 
-// Those of a list that are not done.
+// Runs the unfinished tasks of a list.
 void RunPart(CampaignWork& work, const CampaignOptions& options) {
   const std::vector<std::int64_t> listed =
       Input([&] { return ReadArrayLine(*options.list, static_cast<std::size_t>(options.part)); });

@@ -2,7 +2,7 @@
 //
 //   DIR/ab/abcd...        a sequence, complete: renamed when all of it is written
 //   DIR/ab/abcd....lock   held by the process that renders it
-//   DIR/inputs/...json    files that a world is read from, and their digests when it was last read
+//   DIR/inputs/...json    files that a world is read from, and their digests at the last reading
 #pragma once
 
 #include <cstdint>
@@ -30,19 +30,19 @@ class SequenceCache {
 
   std::filesystem::path PathOf(const std::string& key) const;
   bool Has(const std::string& key) const;
-  // Waits until nobody else makes this sequence, and keeps others from it. Throws std::runtime_error.
+  // Waits until no other process makes this sequence, and locks it. Throws std::runtime_error.
   FileLock Take(const std::string& key) const;
 
   // The files that a world is read from, with their digests, as one text; none where it was never read, or one of them
-  // has changed since: what it names may then have changed, too. `world` names it.
+  // has changed since: the files it names may then have changed, too. `world` names it.
   std::optional<std::string> Inputs(const std::string& world);
-  // They have been found by reading it. Throws std::runtime_error.
+  // Stores the files found by reading the world. Throws std::runtime_error.
   void Remember(const std::string& world, const std::set<std::filesystem::path>& files);
 
-  // Of a file, which is read once.
+  // Digest of a file, which is read once.
   const std::string& DigestNow(const std::filesystem::path& file);
 
-  // Of all files in it.
+  // Total size of the cache's files.
   std::uint64_t Bytes() const;
 
  private:

@@ -22,7 +22,7 @@ namespace vobench::campaign {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMostElements = 1000;  // MaxArraySize is 1001 unless the cluster says otherwise
+constexpr std::size_t kMostElements = 1000;  // the default MaxArraySize is 1001
 constexpr double kPatience_s = 120;
 constexpr int kRounds = 3;  // that may pass without a single new result
 
@@ -75,7 +75,7 @@ class SlurmRun {
   }
 
  private:
-  // Not good where the controller does not answer, or there is no squeue here.
+  // Invalid where the controller does not answer, or there is no squeue here.
   Answer AskForJobs() const { return Ask("squeue --noheader --format=%A --name=" + name_, folder_); }
   // Whether no job of this name is left, queued or at work.
   static bool IsGone(const Answer& jobs) {
@@ -142,7 +142,7 @@ class SlurmRun {
 
 void RunOnSlurm(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks) {
   if (tasks.empty()) return;
-  RemoveFailed(options.output, tasks);  // what is there from now on is a result
+  RemoveFailed(options.output, tasks);  // results that exist from now on are new
   SlurmRun(work, options, std::move(tasks)).Run();
 }
 

@@ -12,14 +12,14 @@
 
 namespace vobench::campaign {
 
-// Every one of these tasks has a result afterwards, failed ones theirs. Jobs that an earlier start has submitted are
-// waited for first. Throws Interrupted, and leaves the jobs in the queue; std::runtime_error with sbatch's own words.
+// Afterwards each of these tasks has a result, possibly `failed`. Jobs submitted by an earlier start are waited for
+// first. Throws Interrupted, and leaves the jobs in the queue; std::runtime_error with sbatch's own message.
 void RunOnSlurm(const CampaignWork& work, const CampaignOptions& options, std::vector<std::int64_t> tasks);
 
-// The name of a campaign's jobs: another for each folder.
+// The name of a campaign's jobs: distinct for each folder.
 std::string SlurmJobName(const std::filesystem::path& out);
 
-// One line for each element of the array: its tasks, in order. No more lines than Slurm allows in an array as it comes.
+// One line for each element of the array: its tasks, in order. At most as many lines as Slurm's default array limit.
 std::vector<std::string> ArrayLines(const std::vector<std::int64_t>& tasks, int tasks_per_job);
 // The tasks of line `part` of such a file. Throws std::invalid_argument.
 std::vector<std::int64_t> ReadArrayLine(const std::filesystem::path& list, std::size_t part);

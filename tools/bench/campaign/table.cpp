@@ -14,7 +14,7 @@
 namespace vobench::campaign {
 namespace {
 
-// Its place in `all`, at whose end it is put where it is new.
+// Index in `all`, to which a new one is appended.
 std::size_t PlaceOf(const TextRow& one, std::vector<TextRow>& all, std::map<TextRow, std::size_t>& places) {
   const auto [at, is_new] = places.try_emplace(one, all.size());
   if (is_new) all.push_back(one);
@@ -99,7 +99,7 @@ std::vector<Table> MakeTables(const Campaign& campaign, const TableSpec& spec, c
   for (const evaluation::Alignment alignment : alignments) {
     TableSpec one = spec;
     if (alignments.size() > 1) one.title += ", " + evaluation::Name(alignment);
-    if (alignment != campaign.align) one.beside.clear();  // what was printed elsewhere is after that
+    if (alignment != campaign.align) one.beside.clear();  // published numbers have the campaign's alignment
     tables.push_back(MakeTable(campaign, one, Aligned(campaign, records, alignment)));
     tables.back().alignment = alignment;
   }

@@ -19,7 +19,7 @@ struct Cell {
   double low = 0, median = 0, high = 0;  // infinite where it falls on a lost run; NaN without runs
   // Median pose coverage behind an error, of systems that write all frames; NaN where there is none.
   double coverage = std::numeric_limits<double>::quiet_NaN();
-  bool few_poses() const { return coverage < 0.95 && std::isfinite(median); }  // said beside the number
+  bool few_poses() const { return coverage < 0.95 && std::isfinite(median); }  // shown beside the number
 };
 
 struct Table {
@@ -29,15 +29,14 @@ struct Table {
   std::vector<std::vector<Cell>> cells;                 // [row][column]
 };
 
-// One; or where its numbers would be of several alignments, one for each.
+// One table; or, where its numbers have several alignments, one for each.
 std::vector<Table> MakeTables(const Campaign& campaign, const TableSpec& spec, const std::vector<TaskRecord>& records);
 
 // Head and rows as texts: the levels of the row, then our numbers, "0.0123 [0.0101, 0.0150] @ 50 %", and those of
-// others.
-// `lost` stands for what falls on a lost run, "-" for no runs.
+// others. `lost`: text for values that fall on a lost run, "-" for no runs.
 using TextRow = std::vector<std::string>;
 std::vector<TextRow> Texts(const Table& table, const std::string& lost);
-// What a cell is, after which alignment, and over how many runs.
+// Caption: quantity of a cell, alignment, and number of runs.
 std::string Caption(const Table& table);
 // "-" for NaN, `lost` for infinity.
 std::string NumberText(double value, double unit, const std::string& lost);
@@ -47,8 +46,8 @@ std::string MarkdownRows(const std::vector<TextRow>& rows, std::size_t left);
 // All tables of the campaign.
 std::string Markdown(const std::vector<Table>& tables);
 std::string Latex(const std::vector<Table>& tables);
-// How many runs of each system ended how, with pose coverage and the first reason: head and rows; empty where all are
-// ours and ok.
+// Number of runs of each system by outcome, with pose coverage and the first reason: head and rows; empty where all
+// are ours and ok.
 std::vector<TextRow> EndRows(const Campaign& campaign, const std::vector<TaskRecord>& records);
 
 }  // namespace vobench::campaign

@@ -1,4 +1,4 @@
-// Tables and curves that a campaign asks for.
+// Tables and curves of a campaign.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -26,7 +26,7 @@ bool CheckMetric(Section& section, const char* key, const std::string& metric) {
   return known;
 }
 
-// `used` are the names that stand elsewhere in the same table or curve.
+// `used`: names used elsewhere in the same table or curve.
 void CheckNames(Section& section, const char* key, const Names& names, const Names& known,
                 std::set<std::string>& used) {
   for (const std::string& name : names) {
@@ -73,7 +73,7 @@ void ReadBeside(Section& table, const Campaign& campaign, TableSpec& spec) {
   }
 }
 
-// All levels as numbers of one kind, in SI; nothing where they are none.
+// All levels as numbers of one kind, in SI; empty where they are not numbers.
 std::vector<double> NumbersOf(const Factor& factor) {
   for (int unit = 0; unit <= static_cast<int>(Unit::angular_acceleration_density); ++unit) {
     std::vector<double> numbers;

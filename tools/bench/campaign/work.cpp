@@ -27,7 +27,7 @@ std::string LevelValue(const nlohmann::json& resolved, const Factor& factor, std
   return value != nullptr && value->is_number() ? value->dump() : factor.levels[level].name;
 }
 
-// A task that does `point` with `system`, for what is the same with every seed.
+// A task of `point` with `system`, for data common to all seeds.
 TaskChoice AtPoint(const Campaign& campaign, std::size_t point, std::size_t system) {
   return ChoiceOf(campaign, static_cast<std::int64_t>(point * campaign.systems.size() + system));
 }

@@ -1,4 +1,4 @@
-// Resolved campaign: every scenario, variant and system read and checked, and the name of all that a task depends on.
+// Resolved campaign: every scenario, variant and system read and checked, and the key of all inputs of a task.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace vobench::campaign {
 
-// A scenario with one value of everything that is varied.
+// A scenario with one value of each varied setting.
 struct CampaignPoint {
   bool images = false;
   std::string sequence;               // of images: its name in the cache
@@ -25,33 +25,33 @@ struct CampaignPoint {
 
 class CampaignWork {
  public:
-  // Throws BadInput with every problem of the campaign's file and of all that it names; nothing is run. `runner` must
-  // outlive it.
+  // Throws BadInput with every problem of the campaign's file and of the files that it names; nothing is run. `runner`
+  // must outlive it.
   CampaignWork(const std::filesystem::path& file, std::filesystem::path cache, const TaskRunner& runner);
 
   const Campaign& campaign() const { return campaign_; }
   const std::vector<CampaignPoint>& points() const { return points_; }
   const SequenceCache& cache() const { return cache_; }
 
-  // Reads worlds that have not been read, in processes of their own, and names the sequences of these points. Throws
+  // Reads worlds that have not been read, in separate processes, and names the sequences of these points. Throws
   // BadInput where one cannot be read.
   void NameSequences(const std::vector<std::size_t>& points, const ProcessLimits& limits);
 
-  // Of all that a task's result depends on; the sequence of its point must have its name.
+  // Key of all inputs of a task's result; the sequence of its point must have its name.
   std::string KeyOf(const TaskChoice& choice) const;
 
   // Renders the sequence of a point. Throws BadInput also where settings have changed, std::runtime_error.
   void Render(std::size_t point, int threads) const;
-  // Runs a task into OUT/tasks/...; an older result goes. The sequence that it needs must be in the cache. Throws as
-  // Render: then nothing is written.
+  // Runs a task into OUT/tasks/..., replacing an older result. The sequence that it needs must be in the cache. Throws
+  // as Render: then nothing is written.
   void Run(const std::filesystem::path& out, std::int64_t task) const;
-  // Records that nothing could be found out, and why.
+  // Records a task without a result, and the reason.
   void RecordFailure(const std::filesystem::path& out, std::int64_t task, const std::string& reason) const;
 
  private:
   void Resolve(const std::filesystem::path& file);
   void RequireUnchanged(const TaskChoice& choice) const;
-  // All but what the task found out.
+  // Record of a task without its results.
   TaskRecord BlankRecord(std::int64_t task) const;
 
   const TaskRunner& runner_;
@@ -61,9 +61,9 @@ class CampaignWork {
   std::string program_;
 };
 
-// Local engine: sequences are rendered first, then tasks run, each in a process of its own. Every one of these tasks
-// has a result afterwards, failed ones theirs. Rendering has no time-out. Sequences have their names. Throws
-// Interrupted; what is done by then stays. No thread may have been started before.
+// Local engine: sequences are rendered first, then tasks run, each in a separate process. Afterwards each of these
+// tasks has a result, possibly `failed`. Rendering has no time-out. Sequences have their names. Throws Interrupted;
+// finished results are kept. No thread may have been started before.
 void RunLocally(const CampaignWork& work, const std::filesystem::path& out, const std::vector<std::int64_t>& tasks,
                 const Share& share);
 

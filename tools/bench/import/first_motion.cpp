@@ -18,7 +18,7 @@
 namespace vobench {
 namespace {
 
-// Mean over the path of what is seen (a surface that is all alike counts little); 0 where the path is not free.
+// Mean visual interest along the path (uniform surfaces count little); 0 where the path is not free.
 double Seen(const sim::MotionDescription& motion, double end_s, const sim::Surroundings& around, bool indoors) try {
   constexpr int kViews = 8;
   const auto path = sim::MakeTrajectory(motion, 1, end_s, 0.1, &around);

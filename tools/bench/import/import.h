@@ -1,4 +1,4 @@
-// Parts of `vobench import`: a world of another program as one of ours, and a first path through it.
+// Parts of `vobench import`: conversion of another program's world, and a first path through it.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace vobench {
 
-// As YAML, to a nanometre.
+// A YAML list, to a nanometre.
 std::string ListText(const glm::dvec3& v);
 
 struct ImportedWorld {
@@ -24,15 +24,15 @@ struct ImportedWorld {
   std::set<std::string> planes;       // names of meshes that are ground rather than stand there
 };
 
-// Visuals and lights of an SDF or URDF file where they stand at the start; x, y, z of SDF are x, -z, y of W. Boxes and
-// the like are meshes of `shapes`, stretched. model:// and package:// are looked for in `folders`, too. Colours count as
-// sRGB. Throws std::runtime_error with all problems, "FILE:LINE: why".
+// Visuals and lights of an SDF or URDF file at their initial poses; x, y, z of SDF are x, -z, y of W. Boxes and other
+// primitives are meshes of `shapes`, stretched. model:// and package:// are looked for in `folders`, too. Colours are
+// taken as sRGB. Throws std::runtime_error with all problems, "FILE:LINE: why".
 // Source: SDFormat 1.0 to 1.9 as libsdformat 12 reads it.
 ImportedWorld ReadSdf(const std::filesystem::path& file, const std::vector<std::filesystem::path>& folders,
                       const std::filesystem::path& shapes);
 
-// The first pass of a material in scripts of OGRE 1.9 (files, or folders that hold *.material); none where no script has it.
-// Some of Gazebo's plain colours (Gazebo/Red) are known without a script.
+// The first pass of a material in scripts of OGRE 1.9 (files, or folders that hold *.material); none where no script
+// has it. Some of Gazebo's plain colours (Gazebo/Red) need no script.
 struct OgreMaterial {
   std::optional<glm::dvec3> diffuse;  // sRGB-coded
   std::string texture;                // a file name; empty: none
@@ -40,8 +40,8 @@ struct OgreMaterial {
 std::optional<OgreMaterial> FindOgreMaterial(const std::string& name,
                                              const std::vector<std::filesystem::path>& scripts);
 
-// The value of a scenario's `trajectory`: hand-held where there is a free place under a roof, else a swing about what
-// stands in the world, from where most is seen. fov_rad: the narrower one. Throws as LoadScene does, and
+// The value of a scenario's `trajectory`: hand-held where there is a free place under a roof, else a swing about the
+// world's contents, from where most is visible. fov_rad: the narrower one. Throws as LoadScene does, and
 // std::runtime_error where no path is free.
 std::string FirstMotion(const ImportedWorld& imported, double fov_rad, double duration_s);
 

@@ -68,7 +68,7 @@ class Reader {
     config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
     config.SetFindCallback([this](const std::string& uri) { return Find(uri, file_).string(); });
     sdf::Root root;
-    console_bridge::noOutputHandler();  // what is no good SDF is tried as URDF, whose reader prints its problems
+    console_bridge::noOutputHandler();  // invalid SDF is tried as URDF, whose reader prints its problems
     Note(root.Load(file_.string(), config));
     if (problems_.empty() && root.WorldCount() > 0) ReadWorld(*root.WorldByIndex(0));
     if (problems_.empty() && root.Model() != nullptr) ReadModel(*root.Model(), Pose::Zero, root.Model()->Name());
@@ -79,7 +79,7 @@ class Reader {
   }
 
  private:
-  // libsdformat says of what is not XML only that it cannot be read.
+  // Checks for XML, of which libsdformat only reports that it cannot be read.
   void RequireXml() const {
     tinyxml2::XMLDocument xml;
     if (xml.LoadFile(file_.c_str()) != tinyxml2::XML_SUCCESS)
@@ -93,7 +93,7 @@ class Reader {
   void Reject(const std::string& file, std::optional<int> line, const std::string& what) {
     problems_.insert((file.empty() ? file_.string() : file) + (line ? ":" + std::to_string(*line) : "") + ": " + what);
   }
-  // All but those that repeat of an outer element, or of the file, that it cannot be read either.
+  // Notes all errors but those that repeat for an outer element, or the file, that it cannot be read either.
   void Note(const sdf::Errors& errors) {
     bool repeats = false;
     for (const sdf::Error& error : errors) {
@@ -104,7 +104,7 @@ class Reader {
     }
   }
 
-  // The file or folder of a URI that stands in the file `from`; empty: it is not there.
+  // The file or folder of a URI in the file `from`; empty: it does not exist.
   fs::path Find(const std::string& uri, const fs::path& from) const {
     const std::size_t scheme = uri.find("://");
     const std::string name = scheme == std::string::npos ? uri : uri.substr(scheme + 3);

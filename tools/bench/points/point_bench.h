@@ -1,4 +1,4 @@
-// Judge of any filter on a point world: a few lines in a unit test (docs/point_world.md).
+// Evaluation of any filter on a point world: a few lines in a unit test (docs/point_world.md).
 // Needs sim and tools/judge/evaluation only.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace vobench {
 
-// What a filter says after a frame: conventions as in docs/conventions.md.
+// Estimate of a filter after a frame: conventions as in docs/conventions.md.
 struct PointEstimate {
   Eigen::Vector3d p_WC = Eigen::Vector3d::Zero();            // [m]
   Eigen::Quaterniond q_WC = Eigen::Quaterniond::Identity();  // unit
@@ -25,7 +25,7 @@ struct PointEstimate {
   evaluation::Matrix12d covariance = evaluation::Matrix12d::Zero();
 };
 
-// It sees what a detector sees: stamps and observations, no truth.
+// A filter's input is that of a detector: stamps and observations, no truth.
 using PointFilter = std::function<PointEstimate(std::int64_t stamp_ns, const std::vector<sim::PointObservation>&)>;
 
 using evaluation::BlockNees;
@@ -35,11 +35,11 @@ struct PointResult {
   std::vector<BlockNees> nees;  // per frame; nothing is aligned
 };
 
-// Plays what is left of the world to the filter. Throws what the filter throws, and std::invalid_argument for an
+// Runs the filter on the remaining frames of the world. Throws what the filter throws, and std::invalid_argument for an
 // estimate that is not finite.
 PointResult Judge(sim::PointWorld world, const PointFilter& filter, const evaluation::JudgeOptions& options = {});
 
-// The same, not judged yet.
+// The same, before evaluation.
 struct PointPlay {
   std::vector<sim::PointFrame> frames;
   Truth truth;

@@ -1,4 +1,4 @@
-// Cramer-Rao problem of a played point world, whose bound the judge computes.
+// Cramer-Rao problem of a simulated point world.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,10 @@
 
 namespace vobench {
 
-// `frames` are all that `world` played so far; `start` is what is known of (dp, dphi, dv, dw) before the first. Views
-// in there that are outliers count like others: the bound is then that of a world without them. Throws
-// std::invalid_argument where there is no prior that the world is drawn from: landmarks other than Landmarks::prior, a
-// motion that is not sampled or has a return, pixels that are not square within 1 %, no noise.
+// `frames` are all that `world` has produced so far; `start`: prior covariance of (dp, dphi, dv, dw) before the first.
+// Outliers are treated as inliers: the bound is that of a world without outliers. Throws std::invalid_argument where
+// the world is not drawn from a prior: landmarks other than Landmarks::prior, a motion that is not sampled or has a
+// return, pixels that are not square within 1 %, no noise.
 evaluation::PointWorldProblem ProblemOf(const sim::PointWorld& world, const std::vector<sim::PointFrame>& frames,
                                         const evaluation::Matrix12d& start);
 

@@ -12,7 +12,7 @@
 namespace vobench {
 namespace {
 
-constexpr int kExactRuns = 10;  // of each world, against which the verdict is held
+constexpr int kExactRuns = 10;  // of each world, as the reference of the verdict
 
 void Check(const ConsistencyOptions& options) {
   settings::FieldCheck check;

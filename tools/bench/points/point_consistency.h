@@ -1,5 +1,5 @@
-// Consistency test of any filter: it plays many worlds drawn from its own prior, compared with exact filters of the
-// same worlds (docs/point_world.md).
+// Consistency test of any filter on many worlds drawn from its own prior, compared with exact filters of the same
+// worlds (docs/point_world.md).
 // Source: docs/metrics.md, "Consistency as pass or fail". Needs sim and tools/judge/evaluation only.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace vobench {
 
-// A new filter for each world. Of the world it may use what a filter is given: camera(), scenario(), TruthAt(0).
+// A new filter for each world. Of the world it may use a filter's usual input: camera(), scenario(), TruthAt(0).
 using MakePointFilter = std::function<PointFilter(const sim::PointWorld& world)>;
 
 struct ConsistencyOptions {
@@ -22,10 +22,9 @@ struct ConsistencyOptions {
   double false_alarm = 0.001;  // of each check; a consistent filter fails the whole in at most verdict.false_alarm()
 };
 
-// ANEES, ranks and coverage of every part of the state, and RMSE over the Cramer-Rao bound. What the filter says after
-// the first frame is taken as its knowledge of the start. Throws std::invalid_argument for options that make no sense,
-// for a world that is not drawn from a prior (ProblemOf) and for an estimate that is not finite; what `make` and its
-// filters throw.
+// ANEES, ranks and coverage of every part of the state, and RMSE over the Cramer-Rao bound. The filter's covariance
+// after the first frame is taken as that of the start. Throws std::invalid_argument for invalid options, for a world
+// that is not drawn from a prior (ProblemOf) and for an estimate that is not finite; what `make` and its filters throw.
 evaluation::ConsistencyVerdict TestConsistency(const sim::Scenario& scenario, const MakePointFilter& make,
                                                const ConsistencyOptions& options = {});
 

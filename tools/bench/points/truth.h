@@ -1,4 +1,4 @@
-// Ground truth of a run, for the judge alone.
+// Ground truth of a run, for evaluation only.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// NEES, NIS and ranks, each with what a consistent filter would show.
+// NEES, NIS and ranks, each with the expectation for a consistent filter.
 #include <algorithm>
 #include <limits>
 #include <map>

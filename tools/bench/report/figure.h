@@ -32,7 +32,7 @@ enum class Draw {
 enum class Role {
   system,  // in the colour of its system
   truth,
-  expected,  // what a consistent filter would show
+  expected,  // expectation for a consistent filter
   context,   // grey
   warning,
 };
@@ -50,7 +50,7 @@ struct Series {
   std::vector<std::string> notes = {};  // shown with each point
 };
 
-// A system's line; one in another role, with its name; what a consistent filter would show; one of many runs.
+// A system's line; a line in another role, with its name; the expectation for a consistent filter; one of many runs.
 Series LineOf(const std::string& system, std::size_t number, Numbers x, Numbers y);
 Series LineAs(Role role, const std::string& name, Numbers x, Numbers y);
 Series Band(const std::string& name, Numbers x, Numbers low, Numbers high);
@@ -62,7 +62,7 @@ struct Figure {
     space,  // x, y and z, to be turned
   };
   std::string title;
-  std::string description;  // for those who do not see it
+  std::string description;  // alternative text
   Kind kind = Kind::plane;
   Axis x, y;
   bool equal_scale = false;  // a metre is as long in both directions
@@ -70,8 +70,8 @@ struct Figure {
   std::string up = "z";  // of Kind::space: "x", "-x", ... points up
 };
 
-// {"format", "systems", "figures", "columns", and `more`'s members}; figures are named f0, f1, ... on the page. Text
-// that is no UTF-8 is repaired; no "<" is left, so that no text can end the element that the JSON stands in.
+// {"format", "systems", "figures", "columns", and `more`'s members}; figures are named f0, f1, ... on the page. Invalid
+// UTF-8 is repaired; "<" is escaped, so that no text can end the element that contains the JSON.
 std::string FiguresJson(const std::vector<std::string>& systems, const std::vector<Figure>& figures,
                         const nlohmann::ordered_json& more);
 

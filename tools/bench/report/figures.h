@@ -1,4 +1,4 @@
-// Figures of a run's report; and the steps that they share: runs that are drawn, and their time axis.
+// Figures of a run's report; and shared steps: selection of the drawn runs, and their time axis.
 // Source: docs/report.md.
 #pragma once
 
@@ -17,13 +17,13 @@ namespace vobench::report {
 std::vector<Figure> PathFigures(const ResultData& data);
 // Distance from the truth in time, aligned by Sim(3).
 std::vector<Figure> AlignedErrorFigures(const ResultData& data);
-// Errors with the three sigma that the filters claim, not aligned; each system's typical run. Pose, or velocity.
+// Errors with the filters' three-sigma bounds, not aligned; each system's typical run. Pose, or velocity.
 std::vector<Figure> PoseErrorFigures(const ResultData& data);
 std::vector<Figure> VelocityErrorFigures(const ResultData& data);
 // NEES over runs, with bands.
 std::vector<Figure> NeesFigures(const ResultData& data);
 std::vector<Figure> NisFigures(const ResultData& data);
-// Ranks of the truth among draws of the filter, over runs; the last of the frames that were ranked.
+// Ranks of the truth among draws of the filter, over runs; at the last ranked frame.
 std::vector<Figure> RankFigures(const ResultData& data);
 // Features and matches, landmarks, time by stage; frame by frame.
 std::vector<Figure> FrameFigures(const ResultData& data);
@@ -34,7 +34,7 @@ constexpr double kCentimetres = 100;
 constexpr std::size_t kFaintRuns = 9;
 std::vector<const RunData*> FaintRuns(const ResultData& data, const std::string& system);
 
-// None where nothing is judged.
+// None where no run is evaluated.
 const RunData* AnyJudged(const ResultData& data);
 
 // The path that the drawn runs belong to: the truth, or where there is none the first run's own.

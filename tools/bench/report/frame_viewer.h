@@ -23,8 +23,8 @@ struct FrameViewer {
   std::vector<ViewedFrame> frames;
 };
 
-// Of each system's typical run; systems see the same pictures, so one of each stamp is kept. Evenly fewer where all
-// would take more than `bytes`. Throws evaluation::InputError where a picture cannot be read.
+// Frames of each system's typical run; systems have the same pictures, so one of each stamp is kept. Evenly thinned
+// where all would take more than `bytes`. Throws evaluation::InputError where a picture cannot be read.
 FrameViewer MakeFrameViewer(const std::filesystem::path& out, const ResultData& data, std::size_t bytes);
 
 nlohmann::ordered_json ToJson(const FrameViewer& viewer);

@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kNumbers = 150'000;  // 5.3 bytes each
 constexpr std::size_t kColours = 5;
 
-// Nothing but what is in the file: no address is asked for anything.
+// Content policy: no external resources.
 constexpr const char* kPolicy =
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'; base-uri 'none'; "
     "form-action 'none'";
@@ -24,7 +24,7 @@ std::vector<Figure> FiguresOf(const Page& page) {
   return figures;
 }
 
-// Panels three abreast where there is room; two stand wider.
+// Panels in three columns where there is room; two are wider.
 std::string Grid(const Section& section, std::size_t& number) {
   if (section.figures.empty()) return "";
   const char* style = section.figures.size() <= 2 || section.figures.size() == 4 ? "grid two" : "grid";
@@ -53,7 +53,7 @@ std::string FramesSection(const FrameViewer& viewer) {
          "found.</p>\n<div id=\"frames\"></div></section>\n";
 }
 
-// What the page's script draws.
+// Data for the page's script.
 std::string DataJson(const Page& page) {
   nlohmann::ordered_json more = nlohmann::ordered_json::object();
   if (page.frames) more["frames"] = ToJson(*page.frames);

@@ -1,4 +1,4 @@
-// HTML page from words, tables, figures and pictures: one file that loads nothing.
+// HTML page of text, tables, figures and pictures: one self-contained file.
 // Source: docs/report_data.md.
 #pragma once
 
@@ -16,7 +16,7 @@ struct Section {
   std::string words = {};  // HTML, one paragraph
   std::vector<Figure> figures = {};
   std::string body = {};  // HTML, below the figures
-  std::string fold = {};  // figures stand behind this word, to be opened
+  std::string fold = {};  // title of a fold that contains the figures
 };
 
 struct Page {
@@ -27,14 +27,14 @@ struct Page {
   std::optional<FrameViewer> frames = {};  // before the last section
 };
 
-// Page and data stay below 3 MB: figures are thinned to 150 000 numbers. A browser without scripts shows words and
-// tables, and says so.
+// Page and data stay below 3 MB: figures are thinned to 150 000 numbers. A browser without scripts shows text, tables
+// and a note.
 std::string Html(const Page& page);
 
 // A table that a script can sort and copy. Cells are HTML; the first row is the head, the first column names the rows.
 std::string Table(const std::string& caption, const std::vector<std::vector<std::string>>& rows);
 
-// The numbers that matter: a large value, what it is, and small print. HTML.
+// A headline number: a large value, its name, and small print. HTML.
 struct Tile {
   std::string value, what, note;
 };

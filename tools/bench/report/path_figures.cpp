@@ -73,7 +73,7 @@ Series InSpace(const ResultData& data, const ev::Trajectory& trajectory, Series 
   return series;
 }
 
-// The page turns it; `up` says how it stands at first.
+// Figure that the page can rotate; `up`: its initial vertical.
 Figure SpaceFigure(const ResultData& data, const std::string& described) {
   Figure figure;
   figure.kind = Figure::Kind::space;

@@ -8,12 +8,12 @@
 
 namespace vobench::report {
 
-// Writes OUT/report.html whole or not at all. Pictures are read from OUT. Throws evaluation::InputError where one
-// cannot be read, std::runtime_error when the page cannot be written.
+// Writes OUT/report.html atomically. Pictures are read from OUT. Throws evaluation::InputError where one cannot be
+// read, std::runtime_error when the page cannot be written.
 void WriteReport(const std::filesystem::path& out, const ResultData& data);
 
-// Of ReadResult(out): errors are computed anew from estimate and truth with the options recorded in metrics.json;
-// should they differ from what is recorded there, the page says so.
+// Of ReadResult(out): errors are computed anew from estimate and truth with the options recorded in metrics.json; the
+// page reports a difference from the recorded ones.
 void WriteReport(const std::filesystem::path& out);
 
 }  // namespace vobench::report

@@ -8,8 +8,8 @@
 
 namespace vobench::report {
 
-// In words and tiles: what ran, accuracy, drift and consistency of each system, and the seeds in which the first system
-// beats each other one. `judged` are the metrics of data.runs.
+// Text and tiles: setup of the run, accuracy, drift and consistency of each system, and the number of seeds in which
+// the first system has the smaller error than each other one. `judged` are the metrics of data.runs.
 std::string RunSummary(const ResultData& data, const std::vector<RunMetrics>& judged);
 
 // Tables, empty where there is nothing in them.

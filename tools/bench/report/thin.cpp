@@ -17,7 +17,7 @@ Numbers Pick(const Numbers& all, const std::vector<std::size_t>& indices) {
   return picked;
 }
 
-// Of [begin, end): the extremes, and the first that has no answer.
+// Adds of [begin, end): the extremes, and the first without an answer.
 void AddExtremes(const Series& series, std::size_t begin, std::size_t end, std::vector<std::size_t>& indices) {
   const auto stretch = [&](const Numbers& numbers) { return std::span(numbers).subspan(begin, end - begin); };
   const auto add = [&](auto at, auto first) { indices.push_back(begin + static_cast<std::size_t>(at - first)); };

@@ -16,7 +16,7 @@ Series Thin(const Series& series, bool is_path, std::size_t most);
 // Numbers in the figures.
 std::size_t Count(const std::vector<Figure>& figures);
 
-// Thinned alike, and as little as it takes for no more than `numbers` numbers in all.
+// Uniform thinning, as little as needed for at most `numbers` numbers in all.
 std::vector<Figure> ThinTo(const std::vector<Figure>& figures, std::size_t numbers);
 
 }  // namespace vobench::report

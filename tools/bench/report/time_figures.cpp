@@ -1,4 +1,4 @@
-// Typical runs in time: errors after alignment, each component of the error beside the claim of the filter; features,
+// Typical runs in time: errors after alignment, each component of the error with the filter's sigma bounds; features,
 // map and time of each frame.
 #include <algorithm>
 #include <cmath>
@@ -53,7 +53,7 @@ void AddErrorWithSigma(const ResultData& data, const std::string& system, std::s
   figure.series.push_back(LineOf(system, number, t, error));
 }
 
-// The errors' own range, and of the bands as much as leaves the errors visible.
+// Range of the errors, and of the bands as much as leaves the errors visible.
 void SetReach(Figure& figure) {
   double largest_error = 0, largest_sigma = 0;
   for (const Series& series : figure.series) {

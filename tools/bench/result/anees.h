@@ -17,7 +17,7 @@ struct SystemRuns {
   std::string system;
   std::vector<evaluation::Metrics> metrics;
   std::vector<std::vector<evaluation::BlockNees>> nees;  // [run][frame]
-  // RMSE / Cramer-Rao bound over all frames and runs, of the first four of kStateBlocks; where it was asked for.
+  // RMSE / Cramer-Rao bound over all frames and runs, of the first four of kStateBlocks; where requested.
   std::optional<evaluation::BoundRatio> bound;
 };
 

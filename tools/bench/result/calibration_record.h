@@ -1,4 +1,4 @@
-// What an odometry has found out about its camera: in run.json and metrics.json, and in words.
+// Estimated camera calibration of an odometry: in run.json and metrics.json, and as text.
 // Source: docs/calibration.md.
 #pragma once
 
@@ -24,9 +24,9 @@ nlohmann::ordered_json ToJson(const CalibrationRecord& record);
 // Throws nlohmann::json::exception.
 CalibrationRecord CalibrationFromJson(const nlohmann::ordered_json& json);
 
-// One line for each quantity that was estimated, with its 95 % interval; ends with a line break. Empty where nothing was.
+// One line for each estimated quantity, with its 95 % interval; ends with a line break. Empty without any.
 std::string CalibrationSummary(const CalibrationRecord& record);
-// What is wrong, and what to check. Empty: nothing.
+// Problem of the calibration, and what to check. Empty: none.
 std::string CalibrationWarning(const CalibrationRecord& record);
 
 }  // namespace vobench

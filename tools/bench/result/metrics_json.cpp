@@ -19,7 +19,7 @@ constexpr const char* kRules[] = {"one_to_one", "tum", "nearest"};
 
 double Seconds(std::int64_t ns) { return static_cast<double>(ns) * 1e-9; }
 
-// A number with its unit and how it was obtained. What is not a number becomes null.
+// A number with its unit and how it was obtained. NaN becomes null.
 Json Number(double value, const char* unit, const std::string& how) {
   return {{"value", value}, {"unit", unit}, {"how", how}};
 }

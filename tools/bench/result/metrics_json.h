@@ -1,4 +1,4 @@
-// metrics.json of a result folder: every number of the judge with its unit and how it was obtained.
+// metrics.json of a result folder: every metric with its unit and how it was obtained.
 // Source: docs/metrics.md.
 #pragma once
 
@@ -16,18 +16,18 @@ struct RunMetrics {
   evaluation::Metrics metrics;
 };
 
-// Writes OUT/metrics.json, "systems" (medians over seeds) and "runs" (everything), whole or not at all; throws
-// std::runtime_error when it cannot.
+// Writes OUT/metrics.json, "systems" (medians over seeds) and "runs" (everything), atomically; throws
+// std::runtime_error on failure.
 void WriteMetricsJson(const std::filesystem::path& out, const std::vector<RunMetrics>& runs);
 
-// What the report needs back to judge again as before, and to see whether it gets the same.
+// Recorded options and metrics, for repeating the evaluation and comparing its results.
 struct RecordedMetrics {
   std::string path;  // of the run folder
   evaluation::JudgeOptions options;
   double ate_sim3_rmse_m = 0;
 };
 
-// Throws std::invalid_argument naming the file and what is wrong.
+// Throws std::invalid_argument naming the file and its problem.
 std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out);
 
 }  // namespace vobench

@@ -31,13 +31,13 @@ struct KeptPictures {
 // Where the picture of a frame is, beside pictures.json.
 std::filesystem::path PicturePath(std::int64_t stamp_ns);
 
-// Features that are no number, or far outside of anything, are left out. Throws std::runtime_error.
+// Features with non-finite or very large numbers are left out. Throws std::runtime_error.
 void WritePictures(const std::filesystem::path& run_folder, const KeptPictures& pictures);
 
 // None where there is no pictures.json. Throws evaluation::InputError naming the file.
 KeptPictures ReadPictures(const std::filesystem::path& run_folder);
 
-// OUT/truth/: depth and optical flow as colour for frames of a rendered run. The scale says what the colours mean.
+// OUT/truth/: depth and optical flow as colour for frames of a rendered run; scale of the colours.
 struct TruthScale {
   double nearest_m = 0, farthest_m = 0;  // depth
   double largest_flow_px = 0;            // to the next frame

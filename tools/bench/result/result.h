@@ -1,4 +1,4 @@
-// Result folder: everything in it as values, read and written (docs/result_folder.md).
+// Result folder: its content as values, read and written (docs/result_folder.md).
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@
 
 namespace vobench {
 
-// Of the map after the last frame, landmarks.csv.
+// Landmark of the map after the last frame, landmarks.csv.
 struct Landmark {
   std::int64_t id = 0;
   Eigen::Vector3d X_W = Eigen::Vector3d::Zero();      // [m]
@@ -36,7 +36,7 @@ struct RunData {
 struct ResultData {
   RunDescription description;
   std::vector<RunData> runs;
-  std::vector<RankTable> ranks;       // where a verdict was asked for
+  std::vector<RankTable> ranks;       // where a verdict was requested
   std::vector<VerdictRow> verdict;    // as well
   std::vector<std::string> warnings;  // metrics.json and the files disagree
 
@@ -46,17 +46,17 @@ struct ResultData {
   std::vector<const RunData*> RunsOf(const std::string& system) const;
   // Systems in the order of first appearance.
   std::vector<std::string> Systems() const;
-  // All runs fly the same path; false where each has drawn its own (worlds of points).
+  // Whether all runs have the same true path; false where each has drawn its own (worlds of points).
   bool SharedTruth() const;
-  // Of a system's runs the one whose ATE is the (lower) median, or the first where nothing is judged. Where the truth
-  // is not shared, all systems show the path that is typical of the first, so that their runs can be compared.
+  // The run of a system whose ATE is the (lower) median, or the first where nothing is evaluated. Where the truth is
+  // not shared, all systems show the path that is typical of the first, so that their runs can be compared.
   const RunData& Typical(const std::string& system) const;
 };
 
-// From the smallest ATE to the largest; the order stays where nothing is judged.
+// From the smallest ATE to the largest; unchanged where nothing is evaluated.
 void SortByAte(std::vector<const RunData*>& runs);
 
-// Mark of a result folder (see OutputFolder): this file is in it, and nothing but these names.
+// Marker of a result folder (see OutputFolder): this file is in it, and nothing but these names.
 inline const std::string kResultMarker = "run.json";
 std::set<std::string> ResultNames(const std::vector<std::string>& systems);
 
@@ -68,8 +68,8 @@ void WriteTruth(const std::filesystem::path& run_folder, const evaluation::Traje
 // Files at the top: run.json; metrics.json, verdict.csv, ranks.csv where not empty. Throws std::runtime_error.
 void WriteTop(const std::filesystem::path& out, const ResultData& data);
 
-// All of it, judged again with the options recorded in metrics.json. Throws evaluation::InputError with every problem
-// of every file.
+// The whole folder, evaluated again with the options recorded in metrics.json. Throws evaluation::InputError with every
+// problem of every file.
 ResultData ReadResult(const std::filesystem::path& out);
 
 }  // namespace vobench

@@ -49,7 +49,7 @@ class Fields {
   evaluation::Problems& problems_;
 };
 
-// Below the result folder, whatever the platform makes of it.
+// Whether a path is below the result folder, on any platform.
 bool Inside(const std::string& path) {
   const fs::path p(path);
   return !path.empty() && !p.is_absolute() && std::find(p.begin(), p.end(), "..") == p.end();

@@ -1,4 +1,4 @@
-// run.json of a result folder: what ran, and how to run it again.
+// run.json of a result folder: description of a run, sufficient to repeat it.
 // Source: docs/result_folder.md.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace vobench {
 
-// One run: what one system did with one seed.
+// One run: one system with one seed.
 struct RunEntry {
   std::string system;  // "rb2pf", "rbpf", ...
   std::uint64_t seed = 0;
@@ -31,11 +31,11 @@ struct RunDescription {
   std::string settings = {};                         // all of them, resolved, as YAML
   std::map<std::string, std::string> versions = {};  // program and libraries, by name
   std::vector<std::string> notes = {};               // for the reader: warnings, coasted gaps
-  std::vector<std::string> verdicts = {};            // in a sentence each, where they were asked for (--verdict)
+  std::vector<std::string> verdicts = {};            // in a sentence each, where requested (--verdict)
   std::vector<RunEntry> runs = {};
 };
 
-// Writes OUT/run.json whole or not at all; throws std::runtime_error when it cannot.
+// Writes OUT/run.json atomically; throws std::runtime_error on failure.
 void WriteRunJson(const std::filesystem::path& out, const RunDescription& description);
 
 // Throws std::invalid_argument naming the file and every field that is missing or of the wrong type, and run folders

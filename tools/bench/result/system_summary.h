@@ -11,7 +11,7 @@ namespace vobench {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// What one system scored: medians over its seeds. NaN where unknown.
+// Metrics of one system: medians over its seeds. NaN where unknown.
 struct SystemSummary {
   std::string system;
   std::size_t runs = 0;
@@ -29,7 +29,7 @@ struct SystemSummary {
 // One per system, in the order of first appearance.
 std::vector<SystemSummary> SummariseSystems(const std::vector<RunMetrics>& runs);
 
-// The same for the baselines, which never look at the images: "constant pose", "constant velocity".
+// The same for the baselines, which do not use the images: "constant pose", "constant velocity".
 std::vector<SystemSummary> SummariseBaselines(const std::vector<RunMetrics>& runs);
 
 // Of one run.
@@ -41,12 +41,12 @@ struct Duel {
 };
 Duel Compare(const std::vector<RunMetrics>& runs, const std::string& first, const std::string& second);
 
-// A table: systems and baselines, then what the columns mean. Ends with a line break. Empty for no runs.
+// A table: systems and baselines, then an explanation of the columns. Ends with a line break. Empty for no runs.
 std::string TextSummary(const std::vector<RunMetrics>& runs);
 
 // Time per stage of an odometry [ms]: a row for each stage and one for all of them, median, 95th percentile and longest
-// over the frames. `elapsed_s` is how long all frames took by the clock, reading them included: with stages side by
-// side less than the sum. Empty for no frames.
+// over the frames. `elapsed_s` is the wall time of all frames, reading included: with parallel stages less than the
+// sum. Empty for no frames.
 std::string TimeTable(const std::vector<evaluation::FrameRecord>& frames, double elapsed_s);
 
 }  // namespace vobench

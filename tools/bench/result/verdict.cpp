@@ -35,7 +35,7 @@ std::vector<std::string> OutOfBand(const ev::ConsistencyVerdict& verdict, bool a
   return texts;
 }
 
-// Names of checks have commas and stand in quotes. Empty where none does.
+// Fields of a line; names of checks contain commas and are quoted. Empty for an invalid line.
 std::vector<ev::Token> Fields(const std::string& line) {
   const std::size_t open = line.find(",\""), close = open == std::string::npos ? open : line.find("\",", open + 2);
   if (close == std::string::npos) return {};

@@ -39,7 +39,7 @@ Viewer.ViewpointZ: -1.8
 Viewer.ViewpointF: 500.0
 )";
 
-// OpenCV's reader takes a number for a real one only where it has a point or an exponent.
+// A real number for OpenCV's reader, which requires a point or an exponent.
 std::string Real(double value) {
   const std::string text = fmt::format("{}", value);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
@@ -62,13 +62,13 @@ std::string Orb(const CameraParams& c, double rate_hz, CalibrationFormat format)
     if (c.k3 != 0) add("k3", c.k3);
   }
   text += fmt::format("Camera.width: {}\nCamera.height: {}\n", c.width, c.height);
-  // ORB-SLAM3 reads a whole number here and refuses any other.
+  // ORB-SLAM3 requires a whole number here.
   text += three ? fmt::format("Camera.fps: {:.0f}\n", rate_hz) : fmt::format("Camera.fps: {}\n", Real(rate_hz));
   return text + "Camera.RGB: 1\n" + kOrb;
 }
 
-// Four lines: the camera in shares of the size, the size, how to rectify, the size after it. Rectified images are
-// cropped, and those whose sides are no multiples of 16, which are halved four times; others stay as they are.
+// Four lines: the camera in fractions of the size, the size, the rectification, the size after it. Rectified images are
+// cropped, and those whose sides are not multiples of 16, which are halved four times; others are unchanged.
 std::string Lines(const CameraParams& c, const std::string& model, double offset, const std::string& lens) {
   const int width = c.width / kSideMultiple * kSideMultiple, height = c.height / kSideMultiple * kSideMultiple;
   const bool whole = width == c.width && height == c.height;

@@ -1,7 +1,7 @@
-// Calibration file of a camera as other systems read it.
+// Calibration file of a camera in the format of an external system.
 // Source: the sample files and readers of ORB-SLAM2 and 3 (Settings), DSO (README, "Geometric Calibration File"), SVO
-// (svo_ros/param/camera_pinhole.yaml), LSD-SLAM (Undistorter.cpp). What each counts from differs: with the
-// centre of the first pixel at (0, 0), as here, DSO and LSD-SLAM (without distortion) take (c + 0.5) / size.
+// (svo_ros/param/camera_pinhole.yaml), LSD-SLAM (Undistorter.cpp). Their pixel origins differ: with the centre of the
+// first pixel at (0, 0), as here, DSO and LSD-SLAM (without distortion) take (c + 0.5) / size.
 #pragma once
 
 #include <string>
@@ -13,11 +13,11 @@ namespace vobench {
 
 inline constexpr int kSideMultiple = 16;  // of the sides of images that are halved four times
 
-// Not a pinhole.
+// Whether the lens differs from a pinhole.
 bool IsDistorted(const sim::CameraParams& camera);
 
-// The text of the file; empty for formats without a file of their own. Throws std::invalid_argument where the format
-// has no place for this lens.
+// The text of the file; empty for formats without a calibration file. Throws std::invalid_argument where the format
+// does not support this lens.
 std::string WriteCalibration(const sim::CameraParams& camera, double rate_hz, campaign::CalibrationFormat format);
 
 }  // namespace vobench

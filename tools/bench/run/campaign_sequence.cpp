@@ -22,10 +22,10 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-// Another word, another name: what is written, and who renders it.
+// Version of the written content and of the renderer, part of a sequence's name.
 constexpr const char* kVersion = "sequence 1, simulator " VOBENCH_SIMULATOR_DIGEST;
 
-// The files that a scenario names. Which others there are to be read depends on these alone.
+// The files that a scenario names. Which further files are read depends on these alone.
 std::vector<fs::path> NamedFiles(const sim::Scenario& scenario) {
   std::vector<fs::path> files;
   const auto add_motion = [&](const sim::MotionDescription& motion) {
@@ -59,7 +59,7 @@ std::string DigestOf(const std::vector<T>& values) {
 void Render(const campaign::SequenceCache& cache, const std::string& key, const SeenSequence& seen, int jobs) {
   if (cache.Has(key)) return;
   const campaign::FileLock lock = cache.Take(key);
-  if (cache.Has(key)) return;  // the one that was waited for has made it
+  if (cache.Has(key)) return;  // made by the process that was waited for
   const sim::Simulator simulator = LoadSimulator(seen.experiment.scenario, jobs);
   const sim::SequenceContent content{sim::Layout::tum, 0, simulator.frame_count(), "vobench " VOBENCH_VERSION,
                                      seen.sensors.stereo};
@@ -97,7 +97,7 @@ void Link(const campaign::SequenceCache& cache, const std::string& key, const Se
   }
   const sim::Scenario& scenario = recording.experiment.scenario;
   std::string camera = sim::CameraYaml(scenario.camera, scenario.sensor.readout_s);
-  if (scenario.sensor.readout_s == 0) camera.erase(camera.find("rolling_shutter"));  // none, or nobody knows
+  if (scenario.sensor.readout_s == 0) camera.erase(camera.find("rolling_shutter"));  // none, or unknown
   base::WriteFile(partial / "rgb.txt", list);
   base::WriteFile(partial / "camera.yaml", camera);
   if (recording.sensors.metric()) AddRecorded(partial, recording.frames, recording.beside_first);
@@ -153,7 +153,7 @@ SeenSequence ReadRecording(const campaign::ScenarioEntry& entry, const campaign:
   read("path", [&] {
     vo::SequenceReader reader(folder);
     frames = reader.entries();
-    // A calibration of another size would reach other people's systems unseen.
+    // A calibration of another size would go unnoticed in external systems.
     const cv::Size size = reader.Next()->image.size();
     if (camera && size != cv::Size(camera->width, camera->height))
       throw BadInput(fmt::format("its pictures are {} x {} pixels, those of the camera {} x {}", size.width,

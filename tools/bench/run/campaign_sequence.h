@@ -1,4 +1,4 @@
-// Sequences of a campaign in the cache: name by content, rendering; recorded ones, read where they lie.
+// Sequences of a campaign in the cache: name by content, rendering; recorded ones, read in place.
 #pragma once
 
 #include <optional>
@@ -14,18 +14,19 @@
 
 namespace vobench {
 
-// Of the contents of the files that the motion in a world of points is read from; empty where there is none.
+// Digest of the files that the motion in a world of points is read from; empty where there is none.
 std::string DigestOfPointFiles(const sim::Scenario& scenario);
 
-// Reads the world of a scenario and gives the cache the names of its files. Throws BadInput where one cannot be read.
+// Reads the world of a scenario and stores the names of its files in the cache. Throws BadInput where one cannot be
+// read.
 void FindWorld(const sim::Scenario& scenario, campaign::SequenceCache& cache);
 
-// What a task sees. Without frames here: what its scenario renders.
+// Input of a task. Without frames here: its scenario's rendering.
 struct SeenSequence {
   Experiment experiment;  // of a recorded sequence's scenario camera, readout and rate alone
   SequenceFrames frames;
   Truth truth;
-  campaign::Sensors sensors = {};     // that it has, of those that the campaign's systems take
+  campaign::Sensors sensors = {};     // available ones, of those that the campaign's systems use
   RecordedSensors beside_first = {};  // of a recorded one
   bool recorded() const { return !frames.empty(); }
 };
@@ -35,15 +36,15 @@ struct SeenSequence {
 SeenSequence ReadRecording(const campaign::ScenarioEntry& entry, const campaign::Changes& changes,
                            campaign::Sensors wanted);
 
-// Of all that the pictures depend on: settings, contents of files, version of the program; of a recorded sequence the
+// Key of all inputs of the pictures: settings, contents of files, version of the program; of a recorded sequence the
 // bytes of its pictures, their stamps, the truth and the camera. None where the files of the world have changed or were
 // never found.
 std::optional<std::string> SequenceKey(const SeenSequence& sequence, campaign::SequenceCache& cache);
 
-// Renders the sequence, with `sensors` all cameras and mav0/ of euroc_folder.h, unless it is there, going on with what a
-// killed process left. Waits where another one is at it.
-// Of a recorded one a folder in TUM's layout: lists, camera.yaml, and links to its pictures, made anew where these lie
-// elsewhere by now. Throws BadInput, std::runtime_error.
+// Renders the sequence, with `sensors` all cameras and mav0/ of euroc_folder.h, unless it exists, continuing an
+// interrupted rendering. Waits for another process that renders it.
+// Of a recorded one a folder in TUM's layout: lists, camera.yaml, and links to its pictures, made anew where these have
+// moved. Throws BadInput, std::runtime_error.
 void MakeIn(const campaign::SequenceCache& cache, const std::string& key, const SeenSequence& sequence, int jobs);
 
 }  // namespace vobench

@@ -1,5 +1,5 @@
-// Tasks of a campaign on our odometries and on external programs: played or tracked, judged, written to their folders.
-// A result is a function of the campaign's file and the task's number; times are kept apart.
+// Tasks of a campaign on our odometries and on external programs: simulated or tracked, evaluated, written to their
+// folders. A result is a function of the campaign's file and the task's number; times are kept apart.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
@@ -41,12 +41,12 @@ using campaign::SequenceCache;
 using campaign::TaskChoice;
 using campaign::TaskRecord;
 
-// Estimates of a system, and the truth they are judged by.
+// Estimates of a system, and the truth for their evaluation.
 struct TaskOutput {
   evaluation::EstimateRun run;
   Truth truth;
   evaluation::JudgeOptions how;
-  std::int64_t begin_ns = 0;  // what the campaign counts its times from
+  std::int64_t begin_ns = 0;  // time zero of the campaign
   double seconds = 0;
   std::optional<CalibrationRecord> calibration;
 };
@@ -92,7 +92,7 @@ void PlayImages(const Experiment& experiment, const fs::path& sequence, const st
   output.calibration = tracker.calibration();
 }
 
-// Times differ from run to run: they are kept apart. None of a program that does not say them.
+// Times differ from run to run: they are kept apart. None of a program that does not report them.
 std::optional<evaluation::Timing> TakeTimes(TaskOutput& output) {
   std::vector<double> features, matching, filter;
   for (evaluation::FrameRecord& frame : output.run.frames) {
@@ -126,7 +126,7 @@ void WriteTimes(const fs::path& folder, const Clock& clock, double tracking_s,
   base::WriteFile(folder / "times.json", json.dump(1) + "\n");
 }
 
-// Without the frames that the campaign does not judge.
+// Metrics without the frames that the campaign omits.
 evaluation::Metrics JudgeOutside(const campaign::Omitted& omit, const TaskOutput& output) {
   const std::int64_t from_ns = output.begin_ns + std::llround(1e9 * omit.from_s);
   const std::int64_t until_ns = output.begin_ns + std::llround(1e9 * omit.until_s);
@@ -156,7 +156,7 @@ void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& o
   }
 }
 
-// What the systems of the campaign take, all together: they see the same sequence.
+// Sensors used by the systems of the campaign, all together: they share one sequence.
 campaign::Sensors Wanted(const Campaign& campaign) {
   campaign::Sensors all;
   for (const campaign::SystemEntry& system : campaign.systems) {
@@ -186,7 +186,7 @@ SeenSequence Load(const Campaign& campaign, const TaskChoice& choice) {
   const auto asks = [](const auto& change) { return change.first == "truth"; };
   if (experiment.scenario.points || std::any_of(changes.begin(), changes.end(), asks))
     return {experiment, {}, {}, sensors};
-  // No truth beside poses and velocities unless the campaign asks for it: it would not be read here.
+  // No truth beside poses and velocities unless the campaign uses it: it would not be read here.
   streams.clear();
   if (sensors.imu) streams.insert(sim::TruthStream::imu);
   for (std::string* resolved : {&experiment.scenario.resolved, &experiment.resolved}) {
@@ -198,13 +198,13 @@ SeenSequence Load(const Campaign& campaign, const TaskChoice& choice) {
   return {experiment, {}, {}, sensors};
 }
 
-// Of pictures the key says which files they were made from.
+// Digest of settings; the files of the pictures are part of the key.
 std::string DigestOfSettings(const Experiment& experiment) {
   const sim::Scenario& scenario = experiment.scenario;
   return campaign::Digest(experiment.resolved + (scenario.points ? DigestOfPointFiles(scenario) : ""));
 }
 
-// A world of points has the seed of its task, and no pictures for an external system.
+// A world of points has the seed of its task, and no pictures for an external system: problems of both.
 void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const campaign::TaskRunner::Refuse& refuse) {
   for (const auto& [key, value] : campaign::ChangesAt(campaign, choice)) {
     if (key == "seed") refuse("seed", "each task has a world of its own, with the seed of the task");
@@ -213,7 +213,7 @@ void RefusePoints(const Campaign& campaign, const TaskChoice& choice, const camp
   if (system.system.empty()) refuse("", "a world of points has no pictures for '" + system.name + "'");
 }
 
-// Sensors that a system takes and the sequence does not have, and lenses that it has no model of.
+// Problems: sensors of a system that the sequence does not have, and unsupported lenses.
 void RefuseMissing(const campaign::SystemEntry& system, const SeenSequence& seen,
                    const campaign::TaskRunner::Refuse& refuse) {
   const campaign::Sensors& takes = system.external.sensors;
@@ -227,7 +227,7 @@ void RefuseMissing(const campaign::SystemEntry& system, const SeenSequence& seen
     refuse("", who + "EuRoC's layout: " + problem);
 }
 
-// A stamp in another unit, or from another clock, may fit one frame by chance; and what comes last.
+// Checks for stamps in another unit, or from another clock, which may fit one frame by chance; and for the last one.
 void CheckStamps(const TaskOutput& output, TaskRecord& record) {
   if (record.status != campaign::Status::ok || output.run.trajectory.empty()) return;
   const std::vector<std::int64_t>& frames = *output.how.frame_stamps_ns;
@@ -260,7 +260,7 @@ class CampaignTasks : public campaign::TaskRunner {
     if (!images) RefusePoints(campaign, choice, refuse);
     const campaign::SystemEntry& system = campaign.systems[choice.system];
     if (system.external.sensors.metric() && experiment.prior.focal_error != 0) {
-      // It would not reach the system, and must not look as if it did.
+      // Without effect on the system, which must not go unnoticed.
       refuse("prior.focal_error", "'" + system.name + "' is given the cameras of mav0 as they are");
     }
     if (images) RefuseMissing(system, seen, refuse);
@@ -297,7 +297,7 @@ class CampaignTasks : public campaign::TaskRunner {
     if (experiment.scenario.points) {
       output = PlayPoints(experiment, system.system, record.seed);
     } else {
-      MakeIn(cache, sequence, seen, 1);  // what was recorded may lie elsewhere by now
+      MakeIn(cache, sequence, seen, 1);  // the recorded files may have moved
       output.truth = seen.recorded() ? seen.truth : TruthOfAllFrames(experiment.scenario);
       if (campaign::AlignmentOf(campaign, system) == evaluation::Alignment::yaw && !seen.recorded())
         TurnUpright(experiment.scenario, output.truth);

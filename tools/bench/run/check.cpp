@@ -82,7 +82,7 @@ void PrintRevisits(const sim::Simulator& simulator) {
 void Check(const CheckOptions& options) {
   const Experiment experiment = ReadExperiment(options.scenario, options.overrides);
   if (experiment.scenario.points) return CheckPoints(options, experiment.scenario);
-  sim::Scenario direct = experiment.scenario;  // light that is baked is not needed here
+  sim::Scenario direct = experiment.scenario;  // baked light is not needed here
   direct.render.light = sim::LightMode::direct;
   const sim::Simulator simulator = LoadSimulator(direct, 1);
   PrintWarnings(simulator.warnings());

@@ -18,8 +18,8 @@ namespace vobench {
 
 using settings::Overrides;
 
-// A card of a system, or with `attack` the search for trouble (docs/bench.md). Steps are campaigns in OUT, with the
-// engine and limits of `campaign`, whose own file, output and cache are not used. Throws as RunCampaign.
+// A card of a system, or with `attack` the search for breaking combinations (docs/bench.md). Steps are campaigns in
+// OUT, with the engine and limits of `campaign`, whose own file, output and cache are not used. Throws as RunCampaign.
 struct BenchOptions {
   std::string system;  // one of ours, one of the file's external systems, or a command with {sequence} and {trajectory}
   std::filesystem::path output;
@@ -37,7 +37,7 @@ struct RenderOptions {
   std::optional<std::pair<std::int64_t, std::int64_t>> frames;  // [first, last)
   std::optional<std::uint64_t> seed;                            // instead of the scenario's
   std::string format = "tum";                                   // or euroc, icl
-  bool resume = false;                                          // go on with what an earlier run left
+  bool resume = false;                                          // continue an earlier run
   bool preview = false;                                         // a video and a contact sheet, too
   std::optional<std::string> truth;                             // streams, separated by commas, instead of its own
   int jobs = 1;
@@ -60,13 +60,14 @@ struct TrackOptions {
 };
 void Track(const TrackOptions& options);
 
-// Another tool's numbers: how it reads trajectories, and its output. Throws evaluation::InputError.
+// Reproduction of another tool's numbers: its way of reading trajectories, and its output. Throws
+// evaluation::InputError.
 struct Reproduction {
   evaluation::Reading reading = evaluation::Reading::strict;
   std::function<std::string(const evaluation::Trajectory& estimate, const evaluation::Trajectory& truth)> Run;
 };
 
-// An estimated trajectory is held against the truth.
+// Comparison of an estimated trajectory with the truth.
 struct EvaluateOptions {
   std::filesystem::path estimate;  // TUM file or a run folder
   std::filesystem::path truth;     // TUM file or a sequence
@@ -75,7 +76,7 @@ struct EvaluateOptions {
 };
 void Evaluate(const EvaluateOptions& options);
 
-// All of it in memory: rendered once, tracked by each system with each seed, judged, reported.
+// A run in memory: rendered once, tracked by each system with each seed, evaluated, reported.
 struct RunOptions {
   std::filesystem::path scenario;
   std::optional<std::filesystem::path> output;
@@ -92,7 +93,7 @@ struct RunOptions {
 };
 void Run(const RunOptions& options);
 
-// A scenario is read, its world loaded, and what it says is summed up.
+// Check of a scenario: it is read, its world loaded, and its content summarised.
 struct CheckOptions {
   std::filesystem::path scenario;
   std::optional<std::filesystem::path> path;  // a TUM file of the camera's path, too; of worlds of meshes
@@ -100,7 +101,7 @@ struct CheckOptions {
 };
 void Check(const CheckOptions& options);
 
-// What other programs describe becomes a scenario (docs/your_scene.md).
+// Conversion of another program's world to a scenario (docs/your_scene.md).
 struct ImportOptions {
   std::filesystem::path from;  // SDF, URDF, a mesh file, or a folder of one model or of meshes
   std::filesystem::path output;
@@ -129,19 +130,19 @@ struct ReportOptions {
 };
 void Report(const ReportOptions& options);
 
-// The streams of a sequence are held against each other. Throws std::runtime_error after printing when they disagree.
+// Cross-check of the streams of a sequence. Throws std::runtime_error after printing when they disagree.
 struct VerifyOptions {
   std::filesystem::path sequence;
 };
 void Verify(const VerifyOptions& options);
 
-// The sensor section of a scenario whose pictures look like the recorded ones (docs/sensor.md).
+// The sensor section of a scenario whose pictures have the statistics of recorded ones (docs/sensor.md).
 struct FitCameraOptions {
   std::filesystem::path sequence;
 };
 void FitCamera(const FitCameraOptions& options);
 
-// A sequence is written in another form.
+// Conversion of a sequence to another format.
 struct ExportOptions {
   std::filesystem::path sequence;
   std::optional<std::filesystem::path> bag;   // a ROS 1 bag

@@ -47,7 +47,7 @@ void WriteEurocCamera(const fs::path& folder, const sim::Scenario& scenario, con
 
 void AddRendered(const fs::path& folder, const sim::Simulator& simulator, campaign::Sensors sensors) {
   const sim::Scenario& scenario = simulator.scenario();
-  fs::remove_all(folder / "mav0");  // of a call that was cut short
+  fs::remove_all(folder / "mav0");  // of an interrupted call
   for (const sim::Simulator& camera : sensors.stereo ? simulator.Cameras() : std::vector{simulator}) {
     const std::size_t k = camera.camera_index();
     const fs::path own = sensors.stereo ? folder / scenario.cameras[k].name : folder;

@@ -1,4 +1,4 @@
-// mav0/ of a sequence as EuRoC has it, of links to pictures that lie elsewhere, and without the truth.
+// mav0/ of a sequence in EuRoC's layout, with links to pictures stored elsewhere, and without the truth.
 // Source: Burri et al., "The EuRoC micro aerial vehicle datasets", IJRR 2016.
 #pragma once
 
@@ -14,16 +14,16 @@ namespace vobench {
 
 using SequenceFrames = std::vector<vo::SequenceReader::Entry>;
 
-// FOLDER/mav0/camK: data.csv, sensor.yaml of scenario.camera, and links in data/. Throws BadInput for a lens that has
-// no place in it.
+// FOLDER/mav0/camK: data.csv, sensor.yaml of scenario.camera, and links in data/. Throws BadInput for a lens that the
+// format does not support.
 void WriteEurocCamera(const std::filesystem::path& folder, const sim::Scenario& scenario, const SequenceFrames& frames,
                       std::size_t k);
 
-// Of a sequence in TUM's layout that was rendered into `folder`, a rig's with stereo: mav0/ beside it and, of a rig,
-// the first camera's files where one camera has them. imu0/sensor.yaml says how large gravity is, too.
+// mav0/ beside a sequence in TUM's layout that was rendered into `folder` (a rig's with stereo); and, of a rig, the
+// first camera's files in the place of a single camera's. imu0/sensor.yaml contains the magnitude of gravity, too.
 void AddRendered(const std::filesystem::path& folder, const sim::Simulator& simulator, campaign::Sensors sensors);
 
-// What a recorded sequence has beside its first camera.
+// Sensors of a recorded sequence beside its first camera.
 struct RecordedSensors {
   std::filesystem::path mav;  // mav0/ of the recording
   SequenceFrames second;      // of cam1, as long as the first camera's are used

@@ -26,8 +26,8 @@ evaluation::EstimateRun ReadEstimate(const fs::path& path) {
   return run;
 }
 
-// How a run was judged, which alone says in whose world it began: by the metrics.json of its own folder or, as `run`
-// leaves it, of one further up. Nothing where none names it.
+// Options with which a run was evaluated, which determine its world frame: from the metrics.json of its own folder or,
+// as `run` leaves it, of one further up. None where none names it.
 std::optional<evaluation::JudgeOptions> RecordedOptions(const fs::path& run) {
   const fs::path folder = fs::canonical(run);
   for (fs::path result = folder; result.has_relative_path(); result = result.parent_path()) {
@@ -103,7 +103,7 @@ void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) 
   }
 }
 
-// A best fit says nothing of an estimate where any estimate fits.
+// Checks that the alignment is determined: else the best fit has no information on the estimate.
 void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Metrics& metrics,
                 evaluation::Alignment alignment) {
   const auto warn = [](std::string_view what) { fmt::print(stderr, "vobench: warning: {}\n", what); };

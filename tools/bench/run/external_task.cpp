@@ -38,7 +38,7 @@ std::string Without(std::string text, const std::string& part) {
   return text;
 }
 
-// What a program printed last, cut at 120 bytes, behind ": ", without these folders' names; empty where nothing.
+// The program's last output, cut at 120 bytes, behind ": ", without these folders' names; empty without output.
 std::string LastLine(const fs::path& log, const std::vector<fs::path>& folders) {
   constexpr std::size_t kMost = 120, kTail = 4096;
   std::ifstream stream(log, std::ios::binary);
@@ -52,7 +52,7 @@ std::string LastLine(const fs::path& log, const std::vector<fs::path>& folders) 
   return text.empty() ? "" : ": " + text.substr(0, kMost);
 }
 
-// The first lines of a text, and how many more there are.
+// The first lines of a text, and the number of the others.
 std::string ShortenedTo(std::size_t count, const std::string& text) {
   std::istringstream lines(text);
   std::string kept;
@@ -62,7 +62,7 @@ std::string ShortenedTo(std::size_t count, const std::string& text) {
   return all > count ? kept + fmt::format("\nand {} more", all - count) : kept;
 }
 
-// Lines of a trajectory with a number that is not finite go; how many.
+// Removes lines of a trajectory with a number that is not finite; returns how many.
 std::size_t RemoveNotFinite(const fs::path& file) {
   const std::optional<std::string> text = base::ReadFile(file);
   if (!text) return 0;
@@ -81,7 +81,7 @@ std::size_t RemoveNotFinite(const fs::path& file) {
   return removed;
 }
 
-// Of T_WI those of the first camera.
+// T_WI to T_WC of the first camera.
 void MoveToCamera(evaluation::Trajectory& trajectory, const Eigen::Isometry3d& T_IC) {
   for (evaluation::StampedPose& pose : trajectory) {
     pose.p_WC += pose.q_WC * T_IC.translation();
@@ -89,7 +89,7 @@ void MoveToCamera(evaluation::Trajectory& trajectory, const Eigen::Isometry3d& T
   }
 }
 
-// "; a trajectory with all 45 frames is there ..." of a program that was not accepted; empty where it is not.
+// "; a trajectory with all 45 frames is there ..." of a program that was not accepted; empty without one.
 std::string ToldOfWhole(const fs::path& trajectory, const std::vector<std::int64_t>& stamps_ns) {
   try {
     if (CountAnswered(evaluation::ReadTrajectory(trajectory), stamps_ns).frames < stamps_ns.size()) return "";
@@ -147,7 +147,7 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
   ExternalAnswer answer{{}, sequence.stamps_ns, clock.seconds()};
   if (end.timed_out) {
     lost(campaign::Status::timed_out, fmt::format("took longer than {:g} s", system.timeout_s));
-  } else if (end.status == 126 || end.status == 127) {  // as sh says that it cannot start a program
+  } else if (end.status == 126 || end.status == 127) {  // sh's status where it cannot start a program
     throw BadInput(fmt::format("{}: cannot be started (status {}){}", system.name, end.status,
                                LastLine(folder / "log.txt", places)));
   } else if ((end.signal != 0 || end.status != 0) && !(system.accepts_any_exit && fs::exists(trajectory))) {
@@ -164,7 +164,7 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
       if (left_out > 0)
         record.reason += fmt::format("{}lines without a finite pose, left out: {}", how.empty() ? "" : "; ", left_out);
     } catch (const evaluation::InputError& error) {
-      // Where the task lies does not belong into a table that is the same everywhere.
+      // The task's path does not belong in a table that is the same everywhere.
       lost(campaign::Status::no_answer, ShortenedTo(3, Without(error.what(), at_work.string() + "/")));
     }
   }

@@ -1,4 +1,4 @@
-// Run of an external program on a cached sequence; its crash or silence is a result.
+// Run of an external program on a cached sequence; a crash or a missing trajectory is a result.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace vobench {
 
-// How a trajectory fits the frames of its sequence, each within 20 ms.
+// Correspondence of a trajectory with the frames of its sequence, within 20 ms each.
 struct FramesAnswered {
   std::size_t poses = 0;   // that are those of a frame
   std::size_t frames = 0;  // with a pose
@@ -29,9 +29,9 @@ struct ExternalAnswer {
   double seconds = 0;  // that the program took
 };
 
-// The answer, with record.seed; where there is none, status (crashed, timed_out, no_answer) and reason of `record`
-// say why. Leaves in `folder` what the program printed (log.txt), its calibration and, after a crash or with keep_work,
-// the folder `work` that it ran in. Throws std::runtime_error and BadInput where it cannot start as its entry says.
+// The answer, with record.seed; where there is none, status (crashed, timed_out, no_answer) and reason of `record` are
+// set. Leaves in `folder` the program's output (log.txt), its calibration and, after a crash or with keep_work, its
+// working folder `work`. Throws std::runtime_error and BadInput where it cannot start as specified.
 ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaign::SequenceCache& cache,
                            const std::string& sequence, const sim::Scenario& scenario, bool rendered,
                            const std::filesystem::path& folder, bool keep_work, double focal_error,

@@ -53,7 +53,7 @@ ImportedWorld WorldOf(const ImportOptions& options, const fs::path& shapes) {
   return result;
 }
 
-// Relative where it lies below the scenario.
+// Path relative to the scenario where it is below it.
 std::string Named(const fs::path& file, const fs::path& scenario) {
   const fs::path whole = fs::weakly_canonical(fs::absolute(file)),
                  relative = whole.lexically_relative(fs::weakly_canonical(fs::absolute(scenario).parent_path()));
@@ -101,7 +101,7 @@ void Import(const ImportOptions& options) {
     if (fs::exists(made)) throw BadInput(made.string() + ": is there already");
   }
   ImportedWorld from = WorldOf(options, shapes);
-  from.world.missing_textures = sim::MissingTextures::grey;  // who renders says what they are
+  from.world.missing_textures = sim::MissingTextures::grey;  // missing ones are reported by the renderer
   try {
     for (const auto& [name, text] :
          {std::pair{"box.obj", kBox}, {"plane.obj", kPlane}, {"cylinder.obj", kCylinder}, {"sphere.obj", kSphere}})

@@ -39,7 +39,7 @@ struct LabelledView {
 
 sim::Pose Towards(const glm::dvec3& from, const glm::dvec3& to) { return {from, sim::LookAt(from, to, 0)}; }
 
-// Without the triangles whose back faces the point: of a room seen from outside, near walls and ceiling are left out.
+// Removes the triangles whose back faces the point: of a room seen from outside, near walls and ceiling.
 sim::Scene CutAway(sim::Scene scene, const glm::dvec3& from) {
   for (sim::Mesh& mesh : scene.meshes) {
     std::erase_if(mesh.triangles, [&](const glm::uvec3& t) {
@@ -52,8 +52,8 @@ sim::Scene CutAway(sim::Scene scene, const glm::dvec3& from) {
   return scene;
 }
 
-// Of 400 random places in the world's box, level, those from which most is seen, and not from too near; a fifth of the
-// box apart.
+// Of 400 random places in the world's box, level views of the largest visual interest, not too near to surfaces; a
+// fifth of the box apart.
 std::vector<LabelledView> Inside(const sim::Surroundings& around) {
   constexpr int kPlaces = 400;
   constexpr std::size_t kViews = 3;
@@ -101,7 +101,7 @@ sim::RadianceImage Radiance(const sim::Renderer& renderer, const sim::Pose& pose
   return radiance;
 }
 
-// Of what is not black; 0 where all is.
+// Mean over non-black pixels; 0 where all are black.
 double MeanLuminance(const sim::RadianceImage& radiance) {
   double sum = 0, count = 1e-9;
   for (std::size_t i = 0; i < radiance.rgb.size(); i += 3) {
@@ -158,7 +158,7 @@ void Look(const LookOptions& options) {
                 cv::Scalar(255, 255, 255));
   auto whole = sim::MakeRayTracer(scene, std::move(rays), {});
   const auto is_ambient = [](const sim::Light& light) { return std::holds_alternative<sim::AmbientLight>(light); };
-  if (std::ranges::none_of(scene.lights, is_ambient)) {  // as baked light would give: shadows would be black
+  if (std::ranges::none_of(scene.lights, is_ambient)) {  // in place of baked light: shadows would be black
     const double mean = MeanLuminance(Radiance(*whole, views.front().pose));
     scene.lights.push_back(sim::AmbientLight{glm::dvec3(0.5 * mean)});
     whole = sim::MakeRayTracer(scene);

@@ -22,7 +22,7 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-// What a sequence of any layout may have at its top level; also while written: a killed run leaves what it had begun.
+// Possible names at the top level of a sequence of any layout; also of an interrupted run.
 std::set<std::string> SequenceNames(const sim::Scenario& scenario, bool unfinished) {
   std::set<std::string> names = sim::StreamNames();
   for (const sim::RigCamera& camera : scenario.cameras) names.insert(camera.name);
@@ -55,7 +55,7 @@ sim::SequenceContent Content(const RenderOptions& options, const sim::Simulator&
   return content;
 }
 
-// Nothing of another hand's may be in the way, and without --resume nothing of an earlier run's that is not whole.
+// Throws where files of other origin exist, or without --resume an incomplete sequence.
 void RequireRoom(const RenderOptions& options, const sim::Scenario& scenario, const fs::path& folder,
                  const fs::path& partial) {
   RequireReplaceable(folder, sim::kManifestName, SequenceNames(scenario, false));
@@ -70,7 +70,7 @@ void RequireRoom(const RenderOptions& options, const sim::Scenario& scenario, co
     RequireReplaceable(partial, sim::kManifestName, SequenceNames(scenario, true));
 }
 
-// The sequence of this content is there under its last name. Throws BadInput if another one is.
+// Whether the sequence of this content exists under its final name. Throws BadInput if another one does.
 bool IsWhole(const fs::path& folder, const sim::Simulator& simulator, const sim::SequenceContent& content) {
   const fs::path manifest = folder / sim::kManifestName;
   if (!fs::exists(manifest)) return false;
@@ -91,7 +91,7 @@ void Preview(const fs::path& folder, const sim::Simulator& simulator, const sim:
   WritePreview(folder, frames, simulator.scenario().time.rate_hz);
 }
 
-// Depth of 16 bits may end before the world does.
+// Warns where the world is deeper than 16-bit depth.
 void WarnOfDepthRange(const sim::Simulator& simulator) {
   const sim::WorldExtent& world = simulator.extent();
   double farthest_m = 0;
@@ -105,7 +105,7 @@ void WarnOfDepthRange(const sim::Simulator& simulator) {
       sim::kDepthRange_m, farthest_m)});
 }
 
-// What a stopped run leaves, for its last words.
+// Message on the files kept by a stopped run.
 std::string Kept(std::int64_t whole, const fs::path& partial) {
   if (whole == 0) return "no frame was finished, nothing was kept";
   return fmt::format("the first {} frames are in {}; --resume goes on", whole, partial.string());
@@ -125,7 +125,7 @@ void Render(const RenderOptions& options) {
   const sim::SequenceContent content = Content(options, simulator);
 
   if (options.resume && !fs::exists(partial) && IsWhole(folder, simulator, content)) {
-    fs::remove(folder / sim::kJournalName);  // a kill in the last moment leaves it
+    fs::remove(folder / sim::kJournalName);  // left by a process killed at the end
     if (options.preview && !fs::exists(folder / "contact.jpg")) Preview(folder, simulator, content);
     fmt::print("{} frames in {}, which was whole\n", content.last - content.first, options.output.string());
     return;

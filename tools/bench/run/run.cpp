@@ -1,5 +1,5 @@
-// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and a judge
-// tests accuracy and consistency of the estimate against the truth.
+// A scenario is rendered into a sequence with exact truth, an odometry runs on the sequence, and accuracy and
+// consistency of the estimate are tested against the truth.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@
 namespace vobench {
 namespace {
 
-// Each system with each seed. Of the truth they get the start alone.
+// Each system with each seed. Of the truth they receive the start only.
 std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& experiment,
                                   const sim::Simulator& simulator, const Folder& folder) {
   const vo::Camera camera = CameraForOdometry(experiment);
@@ -47,9 +47,8 @@ std::vector<Tracker> MakeTrackers(const RunOptions& options, const Experiment& e
   return trackers;
 }
 
-// Depth and optical flow of kept frames as pictures in colour: docs/result_folder.md.
-// Colours mean the same in all of them, so they are made at the end; until then every frame takes a third of a
-// megabyte.
+// Depth and optical flow of kept frames as pictures in colour: docs/result_folder.md. They share one colour scale and
+// are therefore made at the end; until then every frame takes a third of a megabyte.
 class TruthPictures {
  public:
   void Add(const sim::Simulator& simulator, std::int64_t index);
@@ -67,7 +66,7 @@ class TruthPictures {
 
 constexpr int kWidest = 240;
 
-// The value that such a share of the sorted ones lies below: a few outliers must not take all colours.
+// Quantile of the values: a few outliers must not determine the colour scale.
 double Quantile(std::vector<float>& values, double share) {
   if (values.empty()) return 0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -84,7 +83,7 @@ void TruthPictures::Add(const sim::Simulator& simulator, std::int64_t index) {
   if (index + 1 < simulator.frame_count()) {
     flow = sim::FlowBetween(simulator.surfaces(), camera, points, view, simulator.ViewAt(index + 1));
   }
-  // Every n-th pixel: neither depth nor flow may be averaged over an edge.
+  // Every n-th pixel: depth and flow must not be averaged over an edge.
   const int every = (camera.width() + kWidest - 1) / kWidest;
   Frame& frame = frames_.emplace_back();
   frame.stamp_ns = simulator.StampNs(index);
@@ -116,7 +115,7 @@ void TruthPictures::Write(const std::filesystem::path& out) const {
     }
   }
   const TruthScale scale{Quantile(depths, 0.01), Quantile(depths, 0.99), Quantile(lengths, 0.99)};
-  if (!(scale.farthest_m > 0)) return;  // nothing was ever seen
+  if (!(scale.farthest_m > 0)) return;  // no surface was seen
   std::filesystem::create_directories(out / "truth");
   for (const Frame& frame : frames_) {
     WritePicture(out / DepthPath(frame.stamp_ns), DepthColours(frame.depth, scale.nearest_m, scale.farthest_m));

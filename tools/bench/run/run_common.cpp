@@ -50,7 +50,7 @@ void ForEach(std::size_t count, int jobs, const std::function<void(std::size_t)>
 }
 
 void Report(const ReportOptions& options) {
-  // Read here first, so that a fault of the folder differs from a report that cannot be written.
+  // Read here first, to distinguish a faulty folder from a report that cannot be written.
   Input([&] { return ReadRunJson(options.output); });
   try {
     report::WriteReport(options.output);

@@ -20,11 +20,11 @@ using Folder = std::unique_ptr<OutputFolder>;  // none: nothing is kept
 
 Folder MakeFolder(const RunOptions& options);
 
-// Its world loaded and baked. A signal that HoldInterrupts holds ends the program meanwhile, with exit status 1: nothing
-// is kept yet. Throws BadInput.
+// Simulator with its world loaded and baked. A signal that HoldInterrupts blocks ends the program meanwhile, with exit
+// status 1: there is nothing to keep yet. Throws BadInput.
 sim::Simulator LoadSimulator(const sim::Scenario& scenario, int jobs);
 
-// All of run.json but the runs.
+// Description for run.json, without its runs.
 RunDescription Describe(const RunOptions& options, const Experiment& experiment, const std::vector<std::string>& notes,
                         const Clock& clock);
 
@@ -41,7 +41,7 @@ vo::Camera CameraOfSequence(const std::filesystem::path& sequence, const std::op
 // Camera and settings of a tracked sequence, as JSON.
 std::string RecordOfTracking(const vo::Camera& camera, const std::string& settings);
 
-// Each run has a world of points of its own, seeded like its filter. Called by Run.
+// Runs on worlds of points: each run has its own, seeded like its filter. Called by Run.
 void RunOnPoints(const RunOptions& options, const Experiment& experiment, const Clock& clock);
 
 }  // namespace vobench

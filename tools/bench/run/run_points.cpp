@@ -1,4 +1,4 @@
-// A world of points is played to each system with each seed, and judged: Monte Carlo without images.
+// Each system with each seed runs on a world of points and is evaluated: Monte Carlo without images.
 #include <fmt/format.h>
 
 #include <mutex>
@@ -28,9 +28,9 @@ struct PointRun {
   // When it is done:
   RunData data;  // metrics alone where nothing is written
   std::vector<BlockNees> nees;
-  std::vector<evaluation::Vector12d> errors;  // only where the bound is asked for
+  std::vector<evaluation::Vector12d> errors;  // only with the bound
   evaluation::LinearisedRuns linearised;  // of the first system's runs: the bound, and for the verdict exact filters
-  evaluation::VerdictRun verdict;         // only where the verdict is asked for
+  evaluation::VerdictRun verdict;         // only with the verdict
   std::vector<std::string> warnings;
 };
 
@@ -40,7 +40,7 @@ sim::PointWorld WorldOf(const Experiment& experiment, std::uint64_t seed) {
   return Input([&] { return sim::PointWorld(scenario); });
 }
 
-constexpr int kExactRuns = 10;  // of each world, against which the verdict is held
+constexpr int kExactRuns = 10;  // of each world, as the reference of the verdict
 
 std::vector<std::size_t> RanksAmong(const sim::PointWorld& world) {
   return RankFrames(static_cast<std::size_t>(world.frame_count()), world.scenario().time.rate_hz);
@@ -91,7 +91,7 @@ void Play(const RunOptions& options, const Experiment& experiment, const Folder&
   WriteTruth(folder->path() / run.data.entry.path, truth.poses, truth.velocities);
 }
 
-// One line for each thing to be warned of.
+// One line for each warning.
 std::vector<std::string> Notes(const std::vector<PointRun>& runs) {
   std::size_t warned = 0;
   std::string first;

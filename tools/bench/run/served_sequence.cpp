@@ -25,10 +25,11 @@ namespace fs = std::filesystem;
 namespace {
 
 using campaign::SequenceLayout;
-constexpr const char* kVersion = "3";  // another one, other folders: of what is served
+constexpr const char* kVersion = "3";  // version of the served content; part of the folders' names
 
-// Pinhole of the largest upright rectangle of rays that this camera's picture holds, without a black border; its sides
-// are multiples of 16. Of a pinhole the middle of its picture. Throws std::invalid_argument where it looks behind itself.
+// Pinhole of the largest upright rectangle of rays inside this camera's picture, without a black border; its sides are
+// multiples of 16. Of a pinhole the middle of its picture. Throws std::invalid_argument where it includes rays behind
+// the camera.
 sim::CameraParams RectifiedCamera(const sim::CameraParams& c) {
   const int width = c.width / kSideMultiple * kSideMultiple, height = c.height / kSideMultiple * kSideMultiple;
   if (!IsDistorted(c)) {
@@ -49,7 +50,7 @@ sim::CameraParams RectifiedCamera(const sim::CameraParams& c) {
   return {width, height, fx, fy, -low.x * fx, -low.y * fy};
 }
 
-// The pixel of `from` that shows what (x, y) of `to`, a pinhole, does.
+// Pixel of `from` that corresponds to (x, y) of `to`, a pinhole.
 glm::dvec2 SamePoint(const sim::CameraParams& to, int x, int y, const sim::Camera& from) {
   return from.Project({(x - to.cx) / to.fx, (y - to.cy) / to.fy, 1});
 }
@@ -81,7 +82,7 @@ void WriteRectified(const fs::path& sequence, const fs::path& folder, const sim:
   base::WriteFile(folder / "rgb.txt", list);
 }
 
-// As the monocular dataset of DSO has it. With automatic exposure the time times the gain: it has no other word for it.
+// In the format of DSO's monocular dataset. With automatic exposure the time times the gain: there is no field for it.
 void WriteTimes(const fs::path& file, const SequenceFrames& frames, const fs::path& exposures,
                 const sim::SensorParams* sensor) {
   std::map<std::int64_t, double> chosen;

@@ -20,8 +20,8 @@ struct ServedSequence {
 };
 
 // Links to the pictures in the cache, or rectified ones, without the truth; made where they are missing. `rendered`:
-// with exposures and photometric calibration, which nobody knows of others. With a `focal_error` (prior.focal_error)
-// the camera that is given, here and in the folder's files, has fx and fy longer by this share. Throws BadInput,
+// with exposures and photometric calibration, unknown of recorded ones. With a `focal_error` (prior.focal_error) the
+// camera given, here and in the folder's files, has fx and fy longer by this fraction. Throws BadInput,
 // std::runtime_error.
 ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& key, const sim::Scenario& scenario,
                      bool rendered, const campaign::ExternalSystem& system, double focal_error = 0);

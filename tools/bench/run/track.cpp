@@ -29,7 +29,7 @@ namespace vobench {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::int64_t kFramesOfACamera = 3000;  // not known: pictures are kept at every 300th frame
+constexpr std::int64_t kFramesOfACamera = 3000;  // for an unknown number: pictures are kept at every 300th frame
 
 Experiment ReadSettings(const TrackOptions& options) {
   settings::Document document =
@@ -83,12 +83,12 @@ void Track(const TrackOptions& options) {
   RunDescription description{fs::weakly_canonical(options.sequence).filename().string(), options.sequence.string(),
                              options.command_line, clock.started_utc()};
   const Clock tracking;
-  std::exception_ptr end;  // by a fault in a stream, which cannot be had again: what came before is the result
+  std::exception_ptr end;  // fault in a stream, which cannot be read again: the frames before are the result
   {
     Progress progress("tracking", frames.value_or(0));
     if (!frames) fmt::print(stderr, "Ctrl-C ends it, and the result is written.\n");
-    // What is recorded is read, decoded and prepared while the frame before is tracked. A camera's newest frame is the
-    // one that is wanted: it is not asked for before the last is done with.
+    // Recorded frames are read, decoded and prepared while the frame before is tracked. Of a live camera the newest
+    // frame is read only when the last one is finished.
     std::optional<vo::ReadAhead> ahead;
     if (frames) ahead.emplace(*source);
     const auto next = [&]() -> std::optional<vo::PreparedFrame> {
@@ -124,7 +124,7 @@ void Track(const TrackOptions& options) {
     try {
       run.judged = evaluation::JudgeSeries(run.run, truth->poses, truth->velocities, JudgeOptionsOf(settings.prior));
       WriteTruth(out.path(), truth->poses, truth->velocities);
-    } catch (const evaluation::InputError& error) {  // of another time: the estimate is worth keeping all the same
+    } catch (const evaluation::InputError& error) {  // of another time: the estimate is kept all the same
       description.notes.push_back(fmt::format("Not judged: {}", error.what()));
       fmt::print(stderr, "vobench: not judged: {}\n", error.what());
     }

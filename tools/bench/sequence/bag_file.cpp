@@ -34,7 +34,7 @@ class BagFile : public MessageFile {
     std::string counts;  // by connection, of eight bytes each
   };
 
-  // Always 13 + 4096 bytes: it is written once more at the end.
+  // Always 13 + 4096 bytes: it is rewritten at the end.
   std::string Beginning(std::uint64_t index) const {
     const std::string fields = Header({{"index_pos", Bytes(index)},
                                        {"conn_count", Bytes(static_cast<Number>(channels_.size()))},

@@ -1,6 +1,6 @@
-// What `vobench export` makes of a sequence: ROS 1 bags, MCAP with the messages of ROS 2, COCO's file of instances.
-// Source: ROS bag format 2.0; MCAP format 0 (mcap.dev/spec); sensor_msgs, geometry_msgs; CDR (OMG DDS-RTPS 2.2); REP 103,
-//   104, 118; COCO data format (cocodataset.org/#format-data).
+// Output formats of `vobench export`: ROS 1 bags, MCAP with the messages of ROS 2, COCO's file of instances.
+// Source: ROS bag format 2.0; MCAP format 0 (mcap.dev/spec); sensor_msgs, geometry_msgs; CDR (OMG DDS-RTPS 2.2);
+//   REP 103, 104, 118; COCO data format (cocodataset.org/#format-data).
 #pragma once
 
 #include <bit>
@@ -32,7 +32,8 @@ struct RosType {
   const char *package, *name, *md5, *definition, *definition2;  // definition2: of ROS 2
 };
 
-// A recording of messages. The file appears with Close. Messages are added in order of time. Throws std::runtime_error naming the file.
+// A recording of messages. The file appears with Close. Messages are added in order of time. Throws
+// std::runtime_error naming the file.
 class MessageFile {
  public:
   virtual ~MessageFile() = default;

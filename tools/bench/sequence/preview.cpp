@@ -46,7 +46,7 @@ void WriteVideo(const fs::path& file, const std::vector<PreviewFrame>& frames, d
     video.write(image);
   }
   video.release();
-  // OpenCV does not say when a disk is full; a video that lacks its end cannot be opened.
+  // OpenCV does not report a full disk; a truncated video cannot be opened.
   const cv::VideoCapture back(unfinished.path().string(), cv::CAP_FFMPEG);
   const auto count = back.isOpened() ? back.get(cv::CAP_PROP_FRAME_COUNT) : 0.0;
   if (static_cast<std::size_t>(count) != frames.size())

@@ -1,4 +1,4 @@
-// Ground truth and frame stamps of a sequence on disk, for the judge alone.
+// Ground truth and frame stamps of a sequence on disk, for evaluation only.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,8 +17,8 @@ namespace vobench {
 // cam0). None when there is none of them. Throws evaluation::InputError or settings::Error.
 std::optional<Truth> ReadSequenceTruth(const std::filesystem::path& sequence);
 
-// When the pictures were taken that the sequence lists: in rgb.txt, ICL-NUIM's associations.txt (index / 30 s) or
-// EuRoC's mav0/cam0/data.csv. None where it has no list. Throws std::runtime_error.
+// Stamps of the pictures that the sequence lists: in rgb.txt, ICL-NUIM's associations.txt (index / 30 s) or EuRoC's
+// mav0/cam0/data.csv. None where it has no list. Throws std::runtime_error.
 std::optional<std::vector<std::int64_t>> ReadFrameStamps(const std::filesystem::path& sequence);
 
 // T_BS of a EuRoC sensor.yaml: maps points from the sensor's frame to the body's. Throws settings::Error.

@@ -1,4 +1,4 @@
-// Conversion from types of the simulator to those of the odometry (images) and of the judge (truth).
+// Conversion from types of the simulator to those of the odometry (images) and of the evaluation (truth).
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 namespace vobench {
 
 vo::Camera ToOdometry(const sim::CameraParams& camera);
-// Its rolling shutter is the sensor's, and not in it.
+// Without its rolling shutter, which belongs to the sensor.
 sim::CameraParams ToSimulator(const vo::Camera& camera);
 // The same as ToOdometry, with the rolling shutter of its sensor.
 vo::Camera CameraOf(const sim::Scenario& scenario);

@@ -29,7 +29,7 @@ std::string Given(settings::Section& section, const std::string& key) {
   return section.Has(key) && section.ReadRaw(key, values) && !values.empty() ? values.front().text : "";
 }
 
-// What is not given, by what is: no window where proposal or weight know none, and a weight that suits the lag.
+// Dependent defaults: no window where proposal or weight do not support one, and a weight that suits the lag.
 void SetDependentDefaults(settings::Section filter, vo::FilterParams& params) {
   const std::string proposal = Given(filter, "proposal"), weight = Given(filter, "weight");
   if (proposal == "bootstrap" || proposal == "ukf" || weight == "importance") params.lag = 0;
@@ -100,7 +100,7 @@ vo::Camera CameraForOdometry(const Experiment& experiment) {
 Experiment LoadExperiment(const std::filesystem::path& scenario, const Overrides& overrides) {
   Experiment experiment;
   std::vector<settings::Problem> problems;
-  std::set<std::string> texts;  // both readers see the same file: each problem once
+  std::set<std::string> texts;  // both readers read the same file: each problem once
   const auto read = [&](const auto& reader) {
     try {
       reader();

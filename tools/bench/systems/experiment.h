@@ -40,7 +40,7 @@ void Visit(V& v, PriorSettings& p) {
   v("shutter_known", p.shutter_known, {"whether the odometry is given the rolling shutter's time"});
 }
 
-// Sections `odometry` and `prior`. What is given is read, the rest stays. Problems go to the section's document.
+// Sections `odometry` and `prior`. Absent keys keep their values. Problems go to the section's document.
 void ReadOdometry(settings::Section section, vo::Params& params);
 void ReadPrior(settings::Section section, PriorSettings& prior);
 
@@ -51,17 +51,17 @@ struct Experiment {
   std::string resolved;  // all of it, defaults included: JSON, which is a scenario again
 };
 
-// What ours starts from where it knows images alone, as in `track`.
+// Prior of our systems with the information of images only, as in `track`.
 inline constexpr PriorSettings kPriorOfImagesAlone{PriorSettings::Start::origin, 0.5, 0.5};
 // Root of the power spectral density of acceleration over the prior depth [1/s^1.5], until both are estimated: with an
 // unknown scale only their ratio matters.
 inline constexpr double kAccelerationPerDepth = 0.625;
 
-// What `track` starts from unless the document's sections `odometry` and `prior` say otherwise; its scenario is none.
+// Settings of `track`: defaults, changed by the document's sections `odometry` and `prior`; its scenario is empty.
 // Throws settings::Error.
 Experiment ReadTrackSettings(settings::Document document);
 
-// Settings of ours that know images and calibration alone, as `track` does: no start, no noise that suits the motion,
+// Settings that restrict our systems to images and calibration, as in `track`: no start, no noise fitted to the motion,
 // no shutter.
 const Overrides& SettingsOfImagesAlone();
 

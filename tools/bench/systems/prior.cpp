@@ -5,8 +5,8 @@
 namespace vobench {
 namespace {
 
-// Standard normal as a function of (seed, dimension). The second word of the counter keeps it apart from the draws of
-// simulator and filter, which may have the same seed.
+// Standard normal as a function of (seed, dimension). The second word of the counter separates it from the draws of
+// simulator and filter with the same seed.
 double Normal(std::uint64_t seed, std::uint32_t dimension) {
   return vo::Normal({seed, vo::Stream{}, dimension, 0x7072696f}, 0);  // "prio"
 }

@@ -1,4 +1,4 @@
-// Prior of the odometry before the first frame: the only place where it may get information from the truth.
+// Prior of the odometry before the first frame: the only information from the truth that it may get.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ inline constexpr double kStartSigma = 1e-6;
 vo::Prior PriorAtOrigin(const PriorSettings& settings);
 
 // At the true pose. The velocity is the true one plus noise drawn from N(0, sigma^2) per axis, a function of the seed
-// alone, and its covariance says so: a consistent prior.
+// alone, with that covariance: a consistent prior.
 vo::Prior PriorFromTruth(const PriorSettings& settings, const evaluation::StampedPose& pose,
                          const evaluation::StampedVelocity& velocity, std::uint64_t seed);
 
-// As the settings have it. Of a velocity that the scenario draws for each seed (velocity_sigma, angular_rate_sigma of a
-// sampled motion) the mean is the mean of that distribution, without noise of its own.
+// Prior by the settings. Where the scenario draws a velocity for each seed (velocity_sigma, angular_rate_sigma of a
+// sampled motion) the mean is the mean of that distribution, without additional noise.
 vo::Prior PriorOf(const PriorSettings& settings, const sim::MotionDescription& motion, const Truth& start,
                   std::uint64_t seed);
 // The same at the start of a world.

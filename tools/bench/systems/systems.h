@@ -13,10 +13,10 @@ const std::vector<std::string>& SystemNames();
 // The same for a help text, separated by commas.
 std::string SystemList();
 
-// The parameters with what makes the system out of them. rb2pf samples the pose only; rbpf the velocity too, at once
-// whatever the lag, and with weight evidence instead of equal; fastslam1 is rbpf with the motion model as its proposal
-// and importance weights; ekfslam samples nothing, not the scale either. rb2pf_paper and rbpf_paper are rb2pf and rbpf
-// with the paper's values (Section V-A) and without what is not in it, but for the start window. Everything else stays.
+// Parameters of a system. rb2pf samples the pose only; rbpf the velocity too, at once whatever the lag, and with weight
+// evidence instead of equal; fastslam1 is rbpf with the motion model as its proposal and importance weights; ekfslam
+// samples nothing, not even the scale. rb2pf_paper and rbpf_paper are rb2pf and rbpf with the paper's values (Section
+// V-A) and without later additions, but for the start window. All other parameters are unchanged.
 vo::Params ForSystem(const std::string& name, vo::Params params);
 
 }  // namespace vobench

@@ -23,7 +23,7 @@ void SeriesFile::Open() {
       base::Descriptor(base::Uninterrupted([&] { return open(folder_.c_str(), O_TMPFILE | O_RDWR | kFlags, 0600); }));
   if (file_) return;
   if (errno != EOPNOTSUPP && errno != EISDIR && errno != EINVAL) Fail("cannot keep", errno);
-  std::string name = (folder_ / ".spool-XXXXXX").string();  // a file system without files that have no name
+  std::string name = (folder_ / ".spool-XXXXXX").string();  // for a file system without unnamed files
   file_ = base::Descriptor(mkostemp(name.data(), kFlags));
   if (!file_ || unlink(name.c_str()) != 0) Fail("cannot keep", errno);
 }

@@ -14,7 +14,7 @@
 
 namespace vobench {
 
-// Unnamed file that ends with this object, however the program ends. It is made when something is first written. Throws
+// Unnamed file that is removed with this object, however the program ends. Created at the first write. Throws
 // std::runtime_error naming the folder and the reason (disk full, no permission).
 class SeriesFile {
  public:
@@ -36,8 +36,7 @@ class DiskBackedSeries {
   static_assert(std::is_trivially_copyable_v<Record>);
 
  public:
-  // Memory has room for so many records; a series that is no longer touches no disk. Without a folder, all are in
-  // memory.
+  // Memory holds so many records; a series within that does not use the disk. Without a folder, all are in memory.
   explicit DiskBackedSeries(const std::optional<std::filesystem::path>& folder, std::size_t in_memory = 1024)
       : file_(folder.value_or("")), in_memory_(folder ? in_memory : std::numeric_limits<std::size_t>::max()) {}
 

@@ -93,7 +93,7 @@ bool IsSmooth(const cv::Mat& depth, const Vector2d& pixel) {
 
 Vector3d IntoCamera(const vo::Pose& T_WC, const Vector3d& X_W) { return T_WC.q_WC.conjugate() * (X_W - T_WC.p_WC); }
 
-// Where the ray of a row, seen at its own time, meets the surface whose depth is known at the stamp.
+// Intersection of the ray of a row, at its own time, with the surface given by the depth at the stamp.
 std::optional<Vector3d> OnSurface(const cv::Mat& depth, const vo::Camera& camera, const vo::Pose& row,
                                   const vo::Pose& stamp, const Vector3d& ray, const Vector2d& pixel) {
   double Z = DepthAt(depth, pixel);
@@ -186,7 +186,7 @@ std::optional<double> MatchErrors::EpipolarDistance(const Landmark& landmark, co
   const Vector3d a = pose->q_WC.conjugate() * (landmark.view->q_WC * landmark.ray);
   const Vector3d b = IntoCamera(*pose, landmark.view->p_WC);
   const Vector3d end = a + b / kNearest_m;
-  constexpr double kGrazing = 0.05;  // of the length of the ray: nearer to the image plane it is not followed
+  constexpr double kGrazing = 0.05;  // of the length of the ray: nearer to the image plane it is excluded
   if (!(a.z() > kGrazing)) return std::nullopt;
   const double share = end.z() > kGrazing ? 1.0 : (a.z() - kGrazing) / (a.z() - end.z());
   const Vector3d last = a + share * (end - a);

@@ -1,8 +1,8 @@
-// Matches, predictions and lives of landmarks against the truth of a sequence, frame by frame: `vobench track --truth`.
-// A landmark is the scene point that the pixel of its first view shows. Where the sequence has depth at the stamp of
-// that view, the point is known and a match has an error of two dimensions; by the poses alone a match is known to lie
-// on the epipolar line of the first view. A rolling shutter is taken into account; the scene is taken to stand still.
-// Units: pixels, seconds.
+// Errors of matches and predictions, and lifetimes of landmarks, against the truth of a sequence, frame by frame:
+// `vobench track --truth`. A landmark is the scene point at the pixel of its first view. Where the sequence has depth
+// at the stamp of that view, the point is known and a match has an error of two dimensions; from the poses alone a
+// match is known to lie on the epipolar line of the first view. A rolling shutter is taken into account; the scene is
+// assumed static. Units: pixels, seconds.
 #pragma once
 
 #include <array>
@@ -26,7 +26,8 @@ class TrueMotion {
   explicit TrueMotion(Truth truth) : truth_(std::move(truth)) {}
 
   // Between two poses of the truth: cubic Hermite in position and rotation vector where both have a velocity, else
-  // linear; beyond the ends at constant velocity. None in gaps of more than 0.25 s, and beyond half of that after an end.
+  // linear; beyond the ends at constant velocity. None in gaps of more than 0.25 s, and beyond half of that after an
+  // end.
   std::optional<vo::Pose> At(std::int64_t stamp_ns) const;
 
  private:
@@ -35,7 +36,7 @@ class TrueMotion {
 
 class MatchErrors {
  public:
-  // What is measured of features; each has its values over a frame, and over the sequence.
+  // Measured quantities of features; each has its values over a frame, and over the sequence.
   enum Quantity {
     kMatch,        // |match - true pixel| of matches whose landmark is known and on a smooth surface [px]
     kEpipolar,     // distance of a match to the first view's epipolar line beyond 0.1 m of depth [px]

@@ -41,7 +41,7 @@ std::vector<FeatureMark> MarksOf(const std::vector<vo::FeatureView>& features) {
 
 }  // namespace
 
-// The middle frame of each stretch: the very first has nothing tracked to show.
+// The middle frame of each stretch: the first frame has no tracked features.
 bool IsKept(std::int64_t index, std::int64_t frames) {
   const std::int64_t every = std::max<std::int64_t>(1, (frames + kPictures - 1) / kPictures);
   return index % every == every / 2;

@@ -40,7 +40,7 @@ class Recorder {
   RunData Result(const RunEntry& entry, const std::vector<vo::MapPoint>& map) const;
 
  private:
-  // One frame's: what live.txt, covariance.txt and frames.csv say of it.
+  // Answer of one frame: its data in live.txt, covariance.txt and frames.csv.
   struct Answer {
     std::int64_t stamp_ns;
     std::array<double, 3> p_WC;

@@ -42,7 +42,7 @@ void Tracker::Track(const vo::PreparedFrame& prepared) {
   const vo::Estimate estimate = [&] {
     try {
       return odometry_.Track(prepared);
-    } catch (const std::invalid_argument& error) {  // anything else is our bug
+    } catch (const std::invalid_argument& error) {  // anything else is a programming error
       throw BadInput(error.what());
     }
   }();

@@ -14,7 +14,7 @@
 
 namespace vobench {
 
-// Which system, with which parameters and seed.
+// System, parameters and seed of a tracker.
 struct TrackerSetup {
   std::string system;
   std::uint64_t seed = 1;
@@ -22,7 +22,7 @@ struct TrackerSetup {
   vo::Prior prior;
 };
 
-// What both kinds have in common.
+// Common part of both kinds.
 template <class Odometry>
 class RecordedOdometry {
  public:
@@ -49,13 +49,14 @@ class Tracker : public RecordedOdometry<vo::Odometry> {
   Tracker(const TrackerSetup& setup, const vo::Camera& camera, std::int64_t frames,
           const std::optional<std::filesystem::path>& out, const std::string& folder);
 
-  // Throws BadInput when the frame does not fit the camera, or time goes back: nothing has changed then. Throws
-  // vo::FilterFault: what was recorded before stands, the map is invalid.
+  // Throws BadInput when the frame does not fit the camera, or time decreases: nothing has changed then. Throws
+  // vo::FilterFault: the record so far is valid, the map is not.
   void Track(const vo::Frame& frame) { Track(vo::PreparedFrame(frame)); }
   void Track(const vo::PreparedFrame& prepared);
 
   RunData Result(const std::vector<vo::MapPoint>& map) const;
-  // Of all frames; none where it is not estimated. Ends the fit of a window, which is else spread over frames.
+  // Of all frames; none where it is not estimated. Completes the fit of a window, which is otherwise spread over
+  // frames.
   std::optional<CalibrationRecord> calibration() const;
   // Of the last frame.
   const std::vector<vo::FeatureView>& features() const { return odometry_.Features(); }
@@ -71,7 +72,7 @@ class PointTracker : public RecordedOdometry<vo::PointOdometry> {
                const std::string& folder);
 
   vo::Estimate Track(const vo::PointFrame& frame);
-  // What the last estimate is the moments of.
+  // Mixture whose moments are the last estimate.
   const std::vector<vo::BeliefComponent>& mixture() const { return odometry_.Mixture(); }
 };
 

@@ -14,21 +14,21 @@
 
 namespace vobench {
 
-// About a second apart, at most ten, the last frame among them. Ranks of each are a histogram of their own over runs:
-// frames of one run are never pooled.
+// Rank frames, about a second apart, at most ten, the last frame among them. Each has its own histogram of ranks over
+// runs: frames of one run are never pooled.
 std::vector<std::size_t> RankFrames(std::size_t frames, double rate_hz);
 
-// What the verdict needs of a run while it plays: the mixture at the rank frames, the size of the innovations at all.
+// Data of a run for the verdict: the mixture at the rank frames, the size of the innovations at all frames.
 class VerdictRecorder {
  public:
   explicit VerdictRecorder(std::vector<std::size_t> rank_frames) : rank_frames_(std::move(rank_frames)) {}
 
-  // `mixture` is what `estimate` is the moments of. Every frame, in order.
+  // `mixture`: its moments are `estimate`. Every frame, in order.
   void Add(const vo::Estimate& estimate, const std::vector<vo::BeliefComponent>& mixture);
 
   // errors: truth less estimate, and nees, of all frames. `seed` names the run: ranks are among draws from the mixture.
-  // The innovation whose whiteness is judged is (NIS - dof) / sqrt(2 dof). Throws std::invalid_argument where the
-  // numbers of frames differ.
+  // The innovation tested for whiteness is (NIS - dof) / sqrt(2 dof). Throws std::invalid_argument where the numbers of
+  // frames differ.
   evaluation::VerdictRun Finish(const std::vector<evaluation::Vector12d>& errors, const std::vector<BlockNees>& nees,
                                 std::uint64_t seed) const;
 
@@ -46,7 +46,7 @@ class VerdictRecorder {
 // In the tangent space at the estimate, where errors are taken.
 evaluation::Mixture MixtureAbout(const vo::Estimate& estimate, const std::vector<vo::BeliefComponent>& mixture);
 
-// As the command line judges; `linearised` are exact filters of the same worlds.
+// Options of the command line; `linearised` are exact filters of the same worlds.
 evaluation::VerdictOptions VerdictOptionsFor(std::vector<std::size_t> rank_frames,
                                              std::span<const evaluation::LinearisedRuns> linearised);
 

@@ -28,7 +28,7 @@ struct SteadyState {
 
 // The filter's gain is (alpha, beta / dt). Of P = (I - K H) M and M = F P F' + Q, both steady, remain
 //   alpha^2 + alpha beta - 2 beta + beta^2 / 6 = 0   and   variance beta^2 / (1 - alpha) = psd dt^3,
-// and P(0, 0) = alpha variance is the one that is asked for (Bar-Shalom et al., 6.5).
+// and P(0, 0) = alpha variance is the required one (Bar-Shalom et al., 6.5).
 SteadyState SteadyStateOf(const LinearFilter& filter) {
   const bool valid = filter.axes > 0 && filter.dt > 0 && filter.psd > 0 && filter.sigma_position > 0;
   if (!valid) throw std::invalid_argument("LinearFilter: axes, dt, psd and sigma_position must be positive");

@@ -36,9 +36,9 @@ struct ExactAnees {
 };
 ExactAnees ExactAneesOf(const LinearFilter& filter, int runs, int frames, int trials = 500, std::uint64_t seed = 1);
 
-// The same from a pool of consistent runs, nees[run][frame]: each trial takes `runs` of them, none twice, so that each
-// by itself is a set of independent runs; trials share runs, the less the larger the pool: ten times `runs` or more.
-// For exact filters that cost more than one axis, as the linearised point world of cramer_rao.h.
+// The same from a pool of consistent runs, nees[run][frame]: each trial draws `runs` of them without replacement, so
+// that each trial is a set of independent runs; trials share runs, the less the larger the pool: ten times `runs` or
+// more. For exact filters that cost more than one axis, as the linearised point world of cramer_rao.h.
 ExactAnees ExactAneesOfPool(const std::vector<std::vector<double>>& nees, int dof, int runs, int trials = 1000,
                             std::uint64_t seed = 1);
 
@@ -52,7 +52,7 @@ struct AneesShare {
 AneesShare ShareInBand(const std::vector<std::vector<double>>& nees, int dof);
 
 // Share and mean are two tests, each with the stated false-alarm rate. Where errors drift, an exact filter's share may
-// be near zero in one of a hundred sets; a threshold of 0 rejects nothing, and the mean is what has power.
+// be near zero in one of a hundred sets; with a threshold of 0 the share rejects nothing, and only the mean has power.
 struct AneesVerdict {
   AneesShare measured;
   double threshold = 0;  // the false-alarm quantile of an exact filter's share

@@ -16,7 +16,7 @@ namespace {
 
 using Stamps = std::vector<std::int64_t>;
 
-// Seconds apart, as the reference tools have it.
+// Distance in seconds, as in the reference tools.
 double Apart(std::int64_t a_ns, std::int64_t b_ns) { return std::abs(SecondsAsRead(a_ns) - SecondsAsRead(b_ns)); }
 
 std::vector<double> SecondsOf(const Stamps& stamps) {
@@ -25,10 +25,10 @@ std::vector<double> SecondsOf(const Stamps& stamps) {
   return seconds;
 }
 
-// More than a difference of two stamps as doubles is off.
+// Bound on the rounding of a difference of two stamps as doubles.
 constexpr std::int64_t kRounding_ns = 2000;
 
-// Whether a pair has its neighbours on the same side in both. truth_of: by estimate, those that are taken.
+// Whether a pair has its neighbours on the same side in both trajectories. truth_of: the accepted pairs, by estimate.
 bool GoesForward(const std::map<std::size_t, std::size_t>& truth_of, std::size_t i, std::size_t j) {
   const auto after = truth_of.lower_bound(i);
   return (after == truth_of.end() || after->second > j) && (after == truth_of.begin() || std::prev(after)->second < j);

@@ -41,7 +41,7 @@ struct MatchedTrajectories {
   Trajectory estimate, truth;
 };
 
-// Throws InputError saying what time each covers when nothing fits.
+// Throws InputError with the time span of each when nothing fits.
 MatchedTrajectories MatchTrajectories(const Trajectory& estimate, const Trajectory& truth,
                                       const AssociationOptions& options);
 

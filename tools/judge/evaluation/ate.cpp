@@ -12,7 +12,7 @@
 namespace evaluation {
 namespace {
 
-// Singular values below this fraction of what the point sets' sizes allow count as zero.
+// Singular values below this fraction of the point sets' extents count as zero.
 constexpr double kRankTolerance = 1e-12;
 
 Similarity Fit(const MatchedTrajectories& matched, Alignment alignment) {
@@ -42,7 +42,7 @@ Similarity Fit(const MatchedTrajectories& matched, Alignment alignment) {
   Eigen::Vector3d S = Eigen::Vector3d::Ones();
   if ((svd.matrixU() * svd.matrixV()).determinant() < 0) S.z() = -1;
 
-  // Positions that do not move but for rounding (their size squared, times epsilon squared) have no extent.
+  // Positions that differ by rounding only (their size squared, times epsilon squared) have no extent.
   const auto moves = [](double variance, const Eigen::Vector3d& mean) {
     return variance > 1e-28 * (1 + mean.squaredNorm());
   };

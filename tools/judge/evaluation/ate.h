@@ -20,14 +20,14 @@ enum class Alignment {
   se3,    // rotation and translation that minimise the squared position errors
   sim3,   // and scale: for monocular estimates
   first,  // the first pair of poses made equal
-  yaw,    // rotation about z and translation, alike: for estimates that know gravity; z is up in both worlds
+  yaw,    // rotation about z and translation, both worlds having z up: for estimates with observed gravity
 };
 inline constexpr std::array kAlignments = {Alignment::none, Alignment::se3, Alignment::sim3, Alignment::first,
                                            Alignment::yaw};
 
 // "none", "se3", "sim3", "first", "yaw".
 std::string Name(Alignment alignment);
-// std::invalid_argument where there is none of that name.
+// Throws std::invalid_argument for an unknown name.
 Alignment AlignmentNamed(const std::string& name);
 
 // X_truth ~ scale * R * X_estimate + t.
@@ -35,8 +35,8 @@ struct Similarity {
   double scale = 1;
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d t = Eigen::Vector3d::Zero();  // [m]
-  // What the positions left open: on one line (or one point) the rotation about it is arbitrary, on one point the scale
-  // too. Aligned positions are optimal all the same; aligned orientations then mean nothing.
+  // Degeneracy of the positions: on one line (or one point) the rotation about it is undetermined, on one point the
+  // scale too. Aligned positions are optimal all the same; aligned orientations are arbitrary.
   bool rotation_determined = true;
   bool scale_determined = true;
 };

@@ -19,11 +19,11 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // Smallest pivot, of the matrix of correlations, that counts as positive.
 constexpr double kPivot = 1e-12;
 
-// P^-1 b for the columns of b; nothing when P is not positive definite. Solved on the correlations, whose pivots have
-// no unit.
+// P^-1 b for the columns of b; none when P is not positive definite. Solved on the correlations, whose pivots have no
+// unit.
 std::optional<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& P, const Eigen::MatrixXd& b) {
   if (!P.allFinite()) return std::nullopt;
-  const Eigen::VectorXd weight = P.diagonal().cwiseSqrt().cwiseInverse();  // a variance that is none leaves no number
+  const Eigen::VectorXd weight = P.diagonal().cwiseSqrt().cwiseInverse();  // not finite for a variance <= 0
   const Eigen::MatrixXd correlation = weight.asDiagonal() * P * weight.asDiagonal();
   const Eigen::LDLT<Eigen::MatrixXd> factors(correlation);
   if (!(factors.vectorD().array() > kPivot).all()) return std::nullopt;

@@ -21,15 +21,15 @@ namespace evaluation {
 
 using Vector12d = Eigen::Matrix<double, 12, 1>;
 
-// Which world the errors are taken in.
+// World frame of the errors.
 enum class Gauge {
   as_is,       // the estimate was started in the truth's world
   first_pose,  // it was started elsewhere, at a pose it knew exactly: truth is moved into its world by the first pair
                // of poses. Exact if that truth is; a noisy first truth makes every later NEES too large
 };
 
-// One frame that has truth, an estimate and a covariance. NaN where there is no answer: no true velocity, or a
-// covariance that is not positive definite (a start that is known exactly has none).
+// One frame that has truth, an estimate and a covariance. NaN where a value is undefined: no true velocity, or a
+// covariance that is not positive definite (as of a start known exactly).
 struct FrameConsistency {
   std::int64_t stamp_ns = 0;  // of the estimate
   Vector12d error;            // [m, rad, m/s, rad/s]
@@ -37,10 +37,10 @@ struct FrameConsistency {
   double nees_pose = 0;       // 6 degrees of freedom
   double nees_velocity = 0;   // 6
   double nees_joint = 0;      // 12
-  // The same, but blind to a wrong scale: the smallest over s of (e - s g)' P^-1 (e - s g), g the direction in which
-  // the truth moves when it is scaled about its start: (p - p_start, 0, v, 0). The truth takes on the estimate's scale,
-  // so that error and covariance are in the same measure. Of a consistent Gaussian error it is chi-square with one
-  // degree less; nothing is fitted across frames. NaN at the start itself, where scale does not show.
+  // Scale-free NEES: the smallest over s of (e - s g)' P^-1 (e - s g), g the direction in which the truth moves when it
+  // is scaled about its start: (p - p_start, 0, v, 0). The truth takes on the estimate's scale, so that error and
+  // covariance are in the same measure. Of a consistent Gaussian error it is chi-square with one degree less; nothing
+  // is fitted across frames. NaN at the start itself, where the scale is unobservable.
   double nees_pose_scale_free = 0;   // 5
   double nees_joint_scale_free = 0;  // 11
 };
@@ -51,17 +51,17 @@ double Nees(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
 double NeesWithoutDirection(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance,
                             const Eigen::VectorXd& direction);
 
-// Of the answers as they were given: the covariances are theirs.
+// Of the answers as given, to which the covariances belong.
 std::vector<FrameConsistency> ComputeConsistency(const EstimateRun& run, const Trajectory& truth,
                                                  const std::optional<Velocities>& truth_velocities, std::int64_t gap_ns,
                                                  Gauge gauge = Gauge::as_is);
 
-// A NEES over one run. Values of neighbouring frames are strongly dependent: mean and share are descriptions of this
-// run, their spread is only to be had from several runs.
+// NEES of one run. Values of neighbouring frames are strongly dependent: mean and share describe this run; their spread
+// needs several runs.
 struct NeesSummary {
   int dof = 0;
   std::size_t frames = 0;    // with a value
-  std::size_t unusable = 0;  // without (FrameConsistency says why)
+  std::size_t unusable = 0;  // frames without (see FrameConsistency)
   // NaN without a frame. Ideal: dof, and the chi-square median
   double mean = std::numeric_limits<double>::quiet_NaN(), median = mean;
   double last = mean;

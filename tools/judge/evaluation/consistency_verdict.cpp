@@ -51,7 +51,7 @@ void JudgeRanks(const std::vector<VerdictRun>& runs, const VerdictOptions& optio
                 ConsistencyVerdict& verdict) {
   std::vector<RankHistogram> coverage;
   for (const std::size_t k : RankFrames(options, frames)) {
-    std::vector<const MixtureScores*> ranked;  // none of a run that is lost by then, or has no belief there
+    std::vector<const MixtureScores*> ranked;  // none of a run that is lost by then, or has no belief
     for (const VerdictRun& run : runs)
       if (k < run.size() && run[k].scores.draws > 0) ranked.push_back(&run[k].scores);
     if (ranked.empty()) {
@@ -144,7 +144,7 @@ ConsistencyVerdict JudgeConsistency(const std::vector<VerdictRun>& runs, const V
   if (frames <= options.first_frame) throw std::invalid_argument("JudgeConsistency: no run has a frame to judge");
   ConsistencyVerdict verdict;
   const auto count = static_cast<int>(runs.size());
-  std::size_t missing = 0;  // frames lost, or with a covariance that is none
+  std::size_t missing = 0;  // frames lost, or with an invalid covariance
   for (const VerdictRun& run : runs) {
     for (std::size_t k = options.first_frame; k < frames; ++k)
       missing += k >= run.size() || std::isnan(run[k].scores.nees.back());
@@ -159,7 +159,7 @@ ConsistencyVerdict JudgeConsistency(const std::vector<VerdictRun>& runs, const V
     const std::string name = kStateBlocks[b].name;
     verdict.checks.push_back(
         {"ANEES share, " + name, anees.measured.share, anees.threshold, true, anees.share_pass, options.false_alarm});
-    const bool low = anees.measured.mean < 1;  // the side that it is on
+    const bool low = anees.measured.mean < 1;  // the side of the deviation
     verdict.checks.push_back({"ANEES mean, " + name, anees.measured.mean, low ? anees.mean_low : anees.mean_high, low,
                               anees.mean_pass, options.false_alarm});
   }

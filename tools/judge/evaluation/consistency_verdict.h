@@ -16,7 +16,7 @@
 
 namespace evaluation {
 
-// What one frame of one run left. Runs are of the same world (equal frames), with different random numbers.
+// Data of one frame of one run. Runs are of the same world (equal frames), with different random numbers.
 struct JudgedFrame {
   Vector12d error = Vector12d::Zero();  // truth less estimate
   MixtureScores scores;
@@ -32,16 +32,16 @@ struct VerdictOptions {
   double false_alarm = 0.01;  // of each check
   LinearFilter reference;     // axes and part are set by the block that is judged
   int trials = 500;           // of the reference; at least 2 / false_alarm
-  // Consistent runs of the world itself, or of each run's own world (cramer_rao.h), in all at least ten times as many
-  // as are judged; same frames. Prefer them: pose drifts, so that its ANEES remembers for seconds, and the linear
+  // Consistent runs of the world itself, or of each run's own world (cramer_rao.h), at least ten times as many as are
+  // tested; same frames. Preferred: the pose drifts, so that its ANEES is correlated over seconds, and the linear
   // filter, whose position is measured, would reject an exact odometry in one case of six (docs/metrics.md).
   std::span<const LinearisedRuns> linearised;
-  std::size_t first_frame = 1;           // frames before are not judged (a start known exactly has no error)
+  std::size_t first_frame = 1;           // earlier frames are not tested (a start known exactly has no error)
   std::vector<std::size_t> rank_frames;  // for ranks and coverage; empty: four, the last among them, evenly spread
   double largest_bound_ratio = 1.2;
-  // The NIS of a frame may be a sum over features, each with its own S: what the features share (the pose) is in every
-  // one of them, and the sum is no chi-square though its mean is the degrees of freedom. Its mean over runs is tested,
-  // by the spread of the runs themselves, and may be off by nis_tolerance.
+  // The NIS of a frame may be a sum over features, each with its own S: their common error (the pose) is in each of
+  // them, and the sum is not chi-square though its mean is the degrees of freedom. Its mean over runs is tested, by the
+  // spread of the runs themselves, with the tolerance nis_tolerance.
   double nis_tolerance = 0.01;
 };
 
@@ -58,8 +58,7 @@ struct ConsistencyVerdict {
   std::vector<Check> checks;
   // Behind them, by kStateBlocks.
   std::vector<AneesVerdict> anees;
-  // [frame of rank_frames][dimension], frame by frame; of no runs where nobody has a belief, and empty without any
-  // rank.
+  // [frame of rank_frames][dimension], frame by frame; without runs where there is no belief, and empty without ranks.
   std::vector<RankHistogram> rank_histograms;
   std::optional<NisMeanVerdict> nis_mean;
   std::optional<WhitenessVerdict> whiteness;

@@ -16,8 +16,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// The exact Kalman filter of the linearised world. State: (pose, velocity), then three numbers per living point. Beside
-// the covariance it carries errors of any number of runs, one per column, each with its own noise.
+// The exact Kalman filter of the linearised world. State: (pose, velocity), then three numbers per active point. Beside
+// the covariance it propagates errors of any number of runs, one per column, each with its own noise.
 class Linearised {
  public:
   Linearised(const PointWorldProblem& problem, int runs, std::uint64_t seed) : problem_(problem), random_(seed, 0) {
@@ -72,7 +72,7 @@ class Linearised {
     P_.triangularView<Eigen::StrictlyUpper>() = P_.transpose();
   }
 
-  // Points anchored here join, those not measured any more leave.
+  // Adds points anchored here, removes those not measured any more.
   void Exchange(std::size_t k) {
     std::vector<Living> kept;
     std::vector<Index> index(12);

@@ -1,7 +1,7 @@
-// Posterior Cramer-Rao bound of pose and velocity from points that a moving camera has seen up to each frame.
+// Posterior Cramer-Rao bound of pose and velocity from the points that a moving camera has observed up to each frame.
 // Source: P. Tichavsky, C. Muravchik, A. Nehorai, "Posterior Cramer-Rao bounds for discrete-time nonlinear filtering",
 // IEEE Trans. Signal Processing 1998. Jacobians are taken at one true trajectory, as in M. Taylor 1979: the covariance
-// of the exact Kalman filter of the world linearised at the truth. docs/metrics.md says what this bounds and what not.
+// of the exact Kalman filter of the world linearised at the truth. Scope of the bound: docs/metrics.md.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct LinearisedRuns {
   std::vector<Matrix12d> bound;
   std::vector<std::vector<Vector12d>> error;  // [run][frame]
 };
-// No runs: the bound alone. Throws InputError listing what is wrong with the problem (an index beyond the last frame, a
+// No runs: the bound alone. Throws InputError listing every problem of the input (an index beyond the last frame, a
 // point behind the camera, ...).
 LinearisedRuns SimulateLinearised(const PointWorldProblem& problem, int runs, std::uint64_t seed = 1);
 

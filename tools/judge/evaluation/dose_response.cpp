@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// Values by block and dose, sorted: what comes out does not depend on the order of the runs.
+// Values by block and dose, sorted, so that the result does not depend on the order of the runs.
 class Blocks {
  public:
   Blocks(std::size_t doses, const std::vector<DoseRun>& runs) : doses_(doses) {
@@ -71,7 +71,7 @@ double Mean(const std::vector<double>& values) {
   return values.empty() ? kNone : sum / static_cast<double>(values.size());
 }
 
-// The ends between which the middle `level` of the values lies, each one of them: infinities need no arithmetic.
+// Ends of the central `level` of the values, both among the values: no arithmetic with infinities.
 std::pair<double, double> Percentiles(std::vector<double>& values, double level) {
   if (values.empty()) return {kNone, kNone};
   std::sort(values.begin(), values.end());

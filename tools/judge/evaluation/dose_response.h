@@ -11,7 +11,7 @@
 
 namespace evaluation {
 
-// One run. Runs of one block (a seed) are drawn together: what is lucky at one dose is so at the others as well.
+// One run. Runs of one block (a seed) are resampled together: their errors are correlated across doses.
 struct DoseRun {
   std::size_t dose = 0;  // 0, 1, ...: the mildest first
   std::size_t block = 0;
@@ -24,25 +24,25 @@ struct BootstrapOptions {
   std::uint64_t seed = 1;  // of the resampling; another one moves the ends by little
 };
 
-// Over the runs of one dose that have a value; NaN where there is none.
+// Estimate over the runs of one dose that have a value; NaN where there is none.
 struct DoseEstimate {
   std::size_t runs = 0;
   double value = 0, low = 0, high = 0;
 };
 
-// The median of each dose 0 ... doses - 1, and of a share (values 0 and 1) the mean. Infinite where half of the runs
-// are. Results depend on neither the order of the runs nor how blocks are numbered apart from their order. Throws
-// std::invalid_argument where a run's dose is not below `doses`, or the options make no sense.
+// The median of each dose 0 ... doses - 1, or for a share (values 0 and 1) the mean. Infinite where half of the runs
+// are. Results do not depend on the order of the runs, and on the numbers of blocks only by their order. Throws
+// std::invalid_argument where a run's dose is not below `doses`, or for invalid options.
 std::vector<DoseEstimate> MediansByDose(std::size_t doses, const std::vector<DoseRun>& runs,
                                         const BootstrapOptions& options = {});
 std::vector<DoseEstimate> MeansByDose(std::size_t doses, const std::vector<DoseRun>& runs,
                                       const BootstrapOptions& options = {});
 
-// Weighted least squares among sequences that do not fall; values of weight 0 count for nothing and get the value of
-// the last one before them that does (NaN where there is none).
+// Isotonic regression: weighted least squares among non-decreasing sequences; values of weight 0 are ignored and get
+// the value of the last one before them with weight (NaN where there is none).
 std::vector<double> IsotonicFit(const std::vector<double>& values, const std::vector<double>& weights);
 
-// Where a share reaches one half: `dose` between the doses `after` (still below) and `before` (no longer).
+// Crossing of one half by a share of runs.
 struct Crossing {
   enum class Kind {
     at_the_first,  // half have failed at the mildest dose already
@@ -55,13 +55,13 @@ struct Crossing {
 
 struct BreakingPoint {
   Crossing at;
-  // An interval for it. From the smallest dose that the bootstrap leaves unbroken to the largest that it breaks: never
-  // narrower than the doses are apart, for what happens between two doses was not measured.
+  // Confidence interval: from the smallest dose that the bootstrap leaves unbroken to the largest that it breaks; never
+  // narrower than the spacing of the doses, between which nothing was measured.
   Crossing low, high;
 };
 
-// Whether doses are rather a constant factor apart than a constant difference: all of one sign above 0, and their
-// ratios more alike than their differences.
+// Whether the spacing of doses is geometric rather than arithmetic: all positive, and their ratios more equal than
+// their differences.
 bool AreGeometric(const std::vector<double>& doses);
 
 // Failed runs have the value 1, others 0. The share of failures is made monotone (IsotonicFit, weighted by runs) and

@@ -1,4 +1,4 @@
-// Counter-based random numbers of the judge: each a function of (seed, stream, index).
+// Counter-based random numbers of the evaluation: each a function of (seed, stream, index).
 // Source: Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC 2011 (Philox 4x32-10); Box-Muller.
 #pragma once
 
@@ -18,7 +18,7 @@ class Draws {
 
   // On the open interval (0, 1), 2^-32 apart.
   double Uniform();
-  // Standard normal; beyond 6.7 sigma there is none.
+  // Standard normal; at most 6.7 sigma.
   double Normal();
   Eigen::VectorXd Normals(Eigen::Index n);
 
@@ -32,7 +32,7 @@ class Draws {
 
 // Square root of a covariance, also of a singular one, for drawing and for densities.
 // P = L L'. `full`: P is positive definite (the least pivot of its correlations, which have no unit, is above 1e-12)
-// and L is its lower triangle; else L is made of eigenvectors, and what is negative of P counts as zero.
+// and L is its lower triangle; else L is made of eigenvectors, with negative eigenvalues of P set to zero.
 struct SquareRoot {
   Eigen::MatrixXd L;
   bool full = false;

@@ -30,7 +30,7 @@ constexpr std::array<Column, 10> kColumns = {{{"searched", &FrameRecord::searche
                                               {"ms_features", nullptr, &FrameRecord::ms_features},
                                               {"ms_matching", nullptr, &FrameRecord::ms_matching},
                                               {"ms_filter", nullptr, &FrameRecord::ms_filter}}};
-constexpr std::size_t kStatus = kColumns.size() + 1;  // behind it kNumericalEvents and `repeated`, where they are known
+constexpr std::size_t kStatus = kColumns.size() + 1;  // behind it kNumericalEvents and `repeated`, where present
 constexpr std::size_t kRepeated = kStatus + kNumericalEvents.size() + 1;
 constexpr std::array kFormerEvents = {"unsettled", "behind", "indefinite", "impossible"};
 
@@ -135,7 +135,7 @@ std::vector<FrameRecord> ReadFrames(const std::filesystem::path& file, Problems&
   return frames;
 }
 
-// Before anything is written, so that a bad number leaves nothing behind.
+// Checked before anything is written, so that an invalid number leaves no file behind.
 void RequireFinite(bool finite, const char* what, std::int64_t stamp_ns) {
   if (finite) return;
   throw std::invalid_argument(std::string(what) + " at " + base::FormatSeconds(stamp_ns) +
@@ -147,7 +147,7 @@ std::string LineOf(const StampedBelief& belief) {
   for (int row = 0; row < 12; ++row) {
     for (int column = row; column < 12; ++column) triangle.push_back(belief.covariance(row, column));
   }
-  // Fifteen digits: a covariance rounded more coarsely may no longer be positive definite.
+  // Fifteen digits: with fewer, a covariance may lose positive definiteness.
   return base::FormatSeconds(belief.velocity.stamp_ns) + FormatNumbers(NumbersOf(belief.velocity)) +
          FormatNumbers(triangle, 15) + '\n';
 }

@@ -20,7 +20,7 @@ struct StampedBelief {
   Matrix12d covariance = Matrix12d::Zero();
 };
 
-// Numerical events: how often in a frame a filter did what its equations do not say (docs/odometry.md).
+// Numerical events of a filter: counts per frame of departures from its equations (docs/odometry.md).
 struct NumericalEvents {
   int not_converged = 0, behind_camera = 0, not_positive_definite = 0, non_finite_weight = 0;
 };
@@ -47,7 +47,7 @@ struct FrameRecord {
   double effective_particles = 0;
   double ms_features = 0, ms_matching = 0, ms_filter = 0;
   bool tracked = false;                   // docs/metrics.md, "Coverage"; by the rule of the program that wrote it
-  std::optional<NumericalEvents> events;  // none where they are not known, as of other people's systems
+  std::optional<NumericalEvents> events;  // none where unknown, as for external systems
   std::optional<int> repeated;            // predictions made again in this frame; none as well
 };
 

@@ -64,7 +64,7 @@ std::optional<LogisticBreak> FitLogisticBreak(const std::vector<BrokenCount>& co
     profile.push_back(Profile(counts, m_of(i)));
     largest = std::max(largest, profile.back().log_likelihood);
   }
-  const auto range = [&](double below) {  // first and last m that are less likely by no more than this
+  const auto range = [&](double below) {  // first and last m whose log-likelihood is less by no more than this
     const auto within = [&](const Best& best) { return best.log_likelihood >= largest - below; };
     const auto first = std::find_if(profile.begin(), profile.end(), within);
     const auto last = std::find_if(profile.rbegin(), profile.rend(), within);

@@ -1,6 +1,6 @@
 // Breaking point of a share that is logistic in the dose, with an interval by profile likelihood.
-// With few doses chi-square in the place of t^2 is too narrow: it held the truth in 82 to 94 % instead of 90 %.
-// Source: Finney, "Probit analysis" (1971), with the logistic in the place of the normal; Venzon and Moolgavkar, "A method
+// With few doses chi-square in place of t^2 is too narrow: its coverage was 82 to 94 % instead of 90 %.
+// Source: Finney, "Probit analysis" (1971), with the logistic in place of the normal; Venzon and Moolgavkar, "A method
 // for computing profile-likelihood-based confidence intervals" (1988).
 //
 //   P(broken at x) = 1 / (1 + exp(-k (x - m))),  k > 0;  m is the breaking point
@@ -25,9 +25,9 @@ struct LogisticBreak {
   double steepness = 0;  // k; at its largest where all runs below m are whole and all above are broken
 };
 
-// Doses are on a scale on which 0 is the mildest and 1 the most severe; m is looked for from -0.5 to 1.5 in steps of 1/400, k
-// from 3 to 1000. None without a run. Throws std::invalid_argument where a count is negative or more are broken than ran,
-// and where `level` is not between 0 and 1.
+// Doses are on a scale on which 0 is the mildest and 1 the most severe; m is searched from -0.5 to 1.5 in steps of
+// 1/400, k from 3 to 1000. None without a run. Throws std::invalid_argument where a count is negative or more are
+// broken than ran, and where `level` is not between 0 and 1.
 std::optional<LogisticBreak> FitLogisticBreak(const std::vector<BrokenCount>& counts, double level = 0.9);
 
 }  // namespace evaluation

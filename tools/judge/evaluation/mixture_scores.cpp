@@ -20,7 +20,7 @@ double TotalWeight(const Mixture& mixture) {
   return total;
 }
 
-// Density of many points: the factors are taken once.
+// Density of many points, factorised once.
 class Density {
  public:
   explicit Density(const Mixture& mixture) {
@@ -114,7 +114,7 @@ Eigen::MatrixXd Draw(const Mixture& mixture, int draws, std::uint64_t seed, std:
     double left = total * random.Uniform();
     std::size_t i = 0;
     while (i + 1 < mixture.size() && left >= mixture[i].weight) left -= mixture[i++].weight;
-    while (!(mixture[i].weight > 0)) --i;  // rounding past the last component, which had no weight
+    while (!(mixture[i].weight > 0)) --i;  // rounding past the last component, which has no weight
     if (roots[i].size() == 0) roots[i] = SquareRootOf(mixture[i].covariance).L;
     points.col(k) = mixture[i].offset + roots[i] * random.Normals(points.rows());
   }

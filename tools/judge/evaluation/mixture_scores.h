@@ -1,4 +1,4 @@
-// Scores of a belief that is a mixture of Gaussians, given the truth: unlike NEES valid far from Gaussian, too.
+// Scores of a Gaussian-mixture belief given the truth: unlike NEES valid far from Gaussian, too.
 // Source: Gneiting & Raftery, "Strictly proper scoring rules", JASA 2007 (energy score); Talts et al.,
 // "Validating Bayesian inference algorithms with simulation-based calibration", 2018 (ranks).
 //
@@ -15,7 +15,7 @@
 
 namespace evaluation {
 
-// Parts of the twelve dimensions that are judged by themselves.
+// Parts of the twelve dimensions that are scored separately.
 struct StateBlock {
   const char* name;
   int start, size;  // size: degrees of freedom
@@ -65,7 +65,7 @@ double HpdMass(const Mixture& mixture, const Eigen::MatrixXd& draws, const Eigen
 // the error, so only for blocks of one unit. NaN with fewer than two draws.
 double EnergyScore(const Eigen::MatrixXd& draws, const Eigen::VectorXd& error);
 
-// All of it for one frame.
+// All scores of one frame.
 struct MixtureScores {
   std::array<double, 7> nees{};  // of the matched moments, by kStateBlocks; NaN without a positive definite covariance
   std::array<double, 7> hpd_mass{};  // by kStateBlocks; NaN without a density
@@ -76,9 +76,9 @@ struct MixtureScores {
 };
 
 // `error` is truth less the mixture's mean. `stream` names the frame and run: equal streams share their random numbers.
-// draws: 2 or more; ranks divide evenly into b bins when draws + 1 is a multiple of b. Or 0, where time matters (many
-// particles, frames whose ranks nobody asks for): no ranks, energies NaN, coverage of one Gaussian only. Throws
-// std::invalid_argument listing what is wrong (no component, a weight below zero or no positive one, a dimension other
+// draws: 2 or more; ranks divide evenly into b bins when draws + 1 is a multiple of b. Or 0, to save time (many
+// particles, frames whose ranks are not needed): no ranks, energies NaN, coverage of one Gaussian only. Throws
+// std::invalid_argument listing every problem (no component, a weight below zero or no positive one, a dimension other
 // than 12, numbers not finite).
 MixtureScores ScoreMixture(const Mixture& mixture, const Vector12d& error, std::uint64_t stream, int draws = 99,
                            std::uint64_t seed = 1);

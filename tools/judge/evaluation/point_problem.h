@@ -1,5 +1,6 @@
 // Point world as an estimation problem: parameters, and Jacobians of motion and measurement at the truth.
-// Source: docs/metrics.md, "The Cramer-Rao bound". Written for the judge alone, tested against finite differences.
+// Source: docs/metrics.md, "The Cramer-Rao bound". Independent of simulator and filter, tested against finite
+// differences.
 //
 // Model: p, v and (delta, w) per axis nearly constant velocity, q_t = q_t-1 Exp(delta); a point anchored where it was
 // first seen, with ray (x, y, 1) and inverse depth rho, is at X_C ~ R_CW (rho (p_a - p) + R_Wa ray), seen at X_C / Z
@@ -35,7 +36,7 @@ struct PointWorldProblem {
   Matrix12d start_covariance = Matrix12d::Zero();  // of (dp, dphi, dv, dw) at frame 0, before its measurements
 };
 
-// Throws InputError listing all that is wrong: an index beyond the last frame, a point behind the camera, ...
+// Throws InputError listing every problem: an index beyond the last frame, a point behind the camera, ...
 void Validate(const PointWorldProblem& problem);
 
 // State error (dp, dphi, dv, dw) from one frame to the next: e_t = F e_t-1 + noise of covariance Q, linearised at the
@@ -46,9 +47,9 @@ struct MotionJacobian {
 MotionJacobian LinearisedMotion(const StampedPose& from, const StampedPose& to, double position_noise,
                                 double orientation_noise);
 
-// A point as the homogeneous (X, rho), X = rho p_a + R_a ray, of which only the direction shows: it is seen along R_CW
-// (X - rho p). All that measurements see of its error are the three components across the true direction; expressed in
-// these the point no longer needs its anchor's pose, and rho = 0 is nothing special.
+// A point as the homogeneous (X, rho), X = rho p_a + R_a ray, of which only the direction is observable: its image is
+// along R_CW (X - rho p). Measurements depend on the three error components across the true direction only; expressed
+// in these the point no longer needs its anchor's pose, and rho = 0 is not singular.
 struct HomogeneousPoint {
   Eigen::Vector4d direction;           // (X, rho), true
   Eigen::Matrix<double, 3, 4> across;  // orthonormal rows, at right angles to it

@@ -1,4 +1,4 @@
-// Relative pose error (RPE): error of the motion between two times, the drift, which no alignment hides.
+// Relative pose error (RPE): error of the motion between two times, the drift, independent of any alignment.
 // Source: Sturm et al., IROS 2012, equation (2): E = (Q_i^-1 Q_j)^-1 (P_i^-1 P_j), P estimate, Q truth.
 //
 // TUM's own script composes A B^-1 instead; see compat/tum.h.
@@ -39,15 +39,15 @@ enum class PairSelection { consecutive, all };
 std::vector<IndexPair> PairsByFrames(std::size_t poses, std::size_t delta, PairSelection selection);
 
 // evo's `m`: delta metres along the trajectory given (evo by default gives the estimate; ours would be the truth).
-// Consecutive: a pose is emitted whenever the way since the last emitted one reaches delta, counting from pose 0, which
-// itself is never one. All: from every pose the one whose distance along the way is nearest to delta, if within the
-// tolerance, a part of delta.
+// Consecutive: a pose is emitted whenever the path length since the last emitted one reaches delta, counting from pose
+// 0, which itself is never one. All: from every pose the one whose distance along the path is nearest to delta, if
+// within the tolerance, a fraction of delta.
 std::vector<IndexPair> PairsByPath(const Trajectory& trajectory, double delta_m, PairSelection selection,
                                    double tolerance = 0.1);
 
-// rpg's and ov_eval's sub-trajectories: from every pose the one whose distance along the way is nearest to length
+// rpg's and ov_eval's sub-trajectories: from every pose the one whose distance along the path is nearest to length
 // further, if nearer than the tolerance; the earliest of equally near. Starts without such an end are left out. way:
-// not decreasing [m].
+// path length, not decreasing [m].
 std::vector<IndexPair> PairsByLength(const std::vector<double>& way, double length_m, double tolerance_m);
 
 }  // namespace evaluation

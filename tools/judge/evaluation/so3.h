@@ -1,4 +1,4 @@
-// Rotation formulas of the judge: its own, so that a mistake elsewhere cannot cancel here.
+// Rotation formulas of the evaluation: independent of the filter's, so that a common mistake cannot cancel.
 #pragma once
 
 #include <Eigen/Core>

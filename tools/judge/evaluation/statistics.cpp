@@ -19,7 +19,7 @@ double Quantile(const std::vector<double>& sorted, double share) {
   const auto below = static_cast<std::size_t>(at);
   const double rest = at - static_cast<double>(below);
   if (rest == 0) return sorted[below];
-  if (std::isinf(sorted[below])) return sorted[below];  // inf - inf is no number
+  if (std::isinf(sorted[below])) return sorted[below];  // inf - inf is NaN
   return sorted[below] + rest * (sorted[below + 1] - sorted[below]);
 }
 

@@ -31,7 +31,7 @@ std::optional<Coverage> CoverageOf(const EstimateRun& run, const JudgeOptions& o
   if (run.frames.empty() && !options.frame_stamps_ns) return std::nullopt;
   Coverage coverage;
   coverage.frames = frames.size();
-  // Each frame once, whatever rule the poses are judged by.
+  // Each frame counts once, whatever the association of poses.
   coverage.with_pose =
       Associate(StampsOf(run.trajectory), frames, {AssociationRule::one_to_one, options.association.gap_ns}).size();
   if (!run.frames.empty()) {
@@ -132,7 +132,7 @@ JudgedSeries JudgeSeries(const EstimateRun& run, const Trajectory& truth,
   Metrics& metrics = series.metrics;
   metrics.options = options;
 
-  // What the truth offers on the frames of the sequence, whether the odometry answered or not.
+  // Pairs of the truth on the frames of the sequence, answered or not.
   const Stamps frames = FrameStamps(run, options);
   Trajectory at_frames = ConstantVelocity(frames, {});
   const MatchedTrajectories offered = MatchTrajectories(at_frames, truth, options.association);

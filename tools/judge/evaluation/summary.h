@@ -1,4 +1,4 @@
-// Metrics of one run: every number of the judge, with its options (docs/metrics.md).
+// Metrics of one run: all metrics of the evaluation, with its options (docs/metrics.md).
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct JudgeOptions {
   std::optional<std::vector<std::int64_t>> frame_stamps_ns;
 };
 
-// A trajectory against the truth.
+// Errors of a trajectory against the truth.
 struct TrajectoryErrors {
   std::size_t pairs = 0;            // associated
   Ate none, se3, sim3, first, yaw;  // by alignment
@@ -43,13 +43,13 @@ struct TrajectoryErrors {
   const Ate& Aligned(Alignment alignment) const;
 };
 
-// Whether the best rotation turns the estimate's z by more than 45 degrees: `yaw` then asks for what is not there.
+// Whether the best rotation turns the estimate's z by more than 45 degrees: `yaw`'s assumption is violated.
 bool TiltsZ(const TrajectoryErrors& errors);
 
 struct Coverage {
   std::size_t frames = 0;
   std::size_t with_pose = 0;
-  std::optional<std::size_t> tracked;  // frames; nothing when the run does not say
+  std::optional<std::size_t> tracked;  // frames; none where the run does not record it
   double pose_coverage() const;
   std::optional<double> tracked_coverage() const;
 };

@@ -9,7 +9,7 @@
 namespace evaluation {
 namespace {
 
-// Into tokens that are there already, so that their memory serves the next line. Blanks about a field are no part of it.
+// Splits into existing tokens, whose memory is reused for the next line. Blanks about a field are removed.
 void Split(std::string_view line, char separator, std::vector<Token>& tokens) {
   std::size_t count = 0;
   const auto add = [&](std::string_view text, int column) {

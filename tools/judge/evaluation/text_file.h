@@ -14,7 +14,7 @@
 
 namespace evaluation {
 
-// Input that cannot be used. what() has one problem per line; beyond the first 50 they are counted.
+// Invalid input. what() has one problem per line; beyond the first 50 they are counted.
 class InputError : public std::invalid_argument {
  public:
   explicit InputError(const std::vector<std::string>& problems);
@@ -43,7 +43,7 @@ struct Line {
 
 // The lines of a file that carry data: no empty ones, none that starts with '#'. Read one at a time, once:
 //   for (const Line& line : Lines(file)) ...
-// A line is good until the next one is asked for.
+// A line is valid until the next one is read.
 class Lines {
  public:
   class Iterator {
@@ -61,7 +61,8 @@ class Lines {
   };
 
   // separator ' ' stands for any run of spaces, tabs, commas and semicolons; with any other, fields may be empty, and
-  // blanks about them are left out. '\n': each line is one token, comments too. Throws InputError when the file cannot be read, as begin and ++ do.
+  // blanks about them are left out. '\n': each line is one token, comments too. Throws InputError when the file cannot
+  // be read, as begin and ++ do.
   explicit Lines(const std::filesystem::path& file, char separator = ' ');
 
   Iterator begin() {
@@ -81,29 +82,29 @@ class Lines {
   bool at_end_ = false;
 };
 
-// The whole text as a finite number; nothing when it is anything else ("nan", "1.2x", "").
+// The whole text as a finite number; none for any other text ("nan", "1.2x", "").
 std::optional<double> ParseNumber(const std::string& text);
-// That of a token; 0, with a problem noted, when it is anything else.
+// The number of a token; 0, with a problem noted, for any other text.
 double NumberIn(const std::filesystem::path& file, int line, const Token& token, Problems& problems);
 // Whether a line has `count` columns; a problem is noted when not.
 bool HasColumns(const std::filesystem::path& file, const Line& line, std::size_t count, Problems& problems);
 
-// The stamp of a line `timestamp numbers`, and its numbers; nothing, with the problems noted, when any is bad. columns:
-// their names.
+// The stamp of a line `timestamp numbers`, and its numbers; none, with the problems noted, when any is invalid.
+// columns: their names.
 std::optional<std::int64_t> ParseRow(const std::filesystem::path& file, const Line& line, const char* columns,
                                      std::span<double> numbers, Problems& problems);
 
 // Each number after a space, to `digits` significant digits.
 std::string FormatNumbers(std::span<const double> numbers, int digits = 12);
 
-// Bound on what is added to a stamp (a gap, an offset, a delta) [s].
+// Bound on a time added to a stamp (a gap, an offset, a delta) [s].
 constexpr double kLongest_s = 1e9;
 
-// Of what is added to a stamp. Nothing beyond kLongest_s, and for what is no number.
+// A time added to a stamp, in nanoseconds. None beyond kLongest_s, and for NaN.
 std::optional<std::int64_t> Nanoseconds(double seconds);
 
 // The double that the reference tools read a stamp as. At 1.3e9 s a double resolves 0.24 us, which decides between two
-// stamps that are equally near; ours are to decide as theirs.
+// equally near stamps; used to decide as those tools do.
 double SecondsAsRead(std::int64_t stamp_ns);
 
 }  // namespace evaluation

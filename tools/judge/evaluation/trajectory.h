@@ -1,4 +1,4 @@
-// Trajectories and velocities of the judge, read from and written to text files.
+// Trajectories and velocities for the evaluation, read from and written to text files.
 // Source: docs/conventions.md (frames, units), docs/sequence_format.md (files); the TUM RGB-D trajectory format.
 #pragma once
 
@@ -33,13 +33,13 @@ std::array<double, 6> NumbersOf(const StampedVelocity& velocity);
 
 using Velocities = std::vector<StampedVelocity>;
 
-// as_written: quaternions keep their norm and of equal stamps all lines are kept, for tools that read so. euroc: the
-// table is EuRoC's, whatever its header says.
+// as_written: quaternions keep their norm and of equal stamps all lines are kept, for tools that read so. euroc:
+// EuRoC's column order, whatever the header.
 enum class Reading { strict, as_written, euroc };
 
-// Reads a table of poses (tools/base/pose_table.h), EuRoC's as it stands: of the body. Quaternions are normalised; a
-// norm that differs from 1 by more than 1e-3 is an error (recorded truth is rounded to four digits, which leaves up to
-// 1e-4). Time must not go back. Of lines with equal stamps the first is kept: motion-capture truth rounded to 0.1 ms
+// Reads a table of poses (tools/base/pose_table.h), EuRoC's unchanged: of the body. Quaternions are normalised; a norm
+// that differs from 1 by more than 1e-3 is an error (recorded truth is rounded to four digits, which leaves up to
+// 1e-4). Time must not decrease. Of lines with equal stamps the first is kept: motion-capture truth rounded to 0.1 ms
 // has such lines; a second one that differs by more than 1 cm or 1 degree from the first is an error. Throws InputError
 // with every problem as file:line:column, and when no pose is left.
 Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading = Reading::strict);
@@ -56,13 +56,13 @@ void WriteVelocities(const std::filesystem::path& file, const Velocities& veloci
 // The velocity at exactly this time, if there is one (stamps of one frame are identical in all files of a sequence).
 std::optional<StampedVelocity> VelocityAt(const Velocities& velocities, std::int64_t stamp_ns);
 
-// Length of the way through the positions up to each pose [m]; the first is 0.
+// Path length through the positions up to each pose [m]; the first is 0.
 std::vector<double> CumulativePathLength(const Trajectory& trajectory);
 
-// Length of the way through all positions [m].
+// Path length through all positions [m].
 double PathLength(const Trajectory& trajectory);
 
-// RMS distance of the positions from their mean [m]; 0 of none.
+// RMS distance of the positions from their mean [m]; 0 without positions.
 double Spread(const Trajectory& trajectory);
 
 }  // namespace evaluation

@@ -20,7 +20,7 @@ NisSummary SummariseNis(const std::vector<FrameRecord>& frames) {
     inside += frame.nis >= band.low && frame.nis <= band.high;
     nis += frame.nis;
     dof += frame.nis_dof;
-    z.push_back((frame.nis - frame.nis_dof) / std::sqrt(frame.nis_dof));  // of equal spread, whatever that is
+    z.push_back((frame.nis - frame.nis_dof) / std::sqrt(frame.nis_dof));  // of constant variance
   }
   summary.frames = z.size();
   if (z.empty()) return summary;
@@ -96,7 +96,7 @@ NisMeanVerdict TestNisMean(const std::vector<std::vector<double>>& nis, const st
   NisMeanVerdict verdict;
   verdict.runs = means.size();
   for (const double mean : means) verdict.per_dof += mean / static_cast<double>(means.size());
-  if (means.size() < 6) {  // no spread to speak of
+  if (means.size() < 6) {  // too few for a standard deviation
     verdict.runs = 0;
     return verdict;
   }

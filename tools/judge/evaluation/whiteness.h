@@ -21,8 +21,8 @@ struct NisSummary {
   // Of frames inside the two-sided 95 % chi-square band of their own degrees of freedom; ideal 0.95, NaN as above
   double share_inside = std::numeric_limits<double>::quiet_NaN();
   // Autocorrelation, at lags 1 to 5 frames, of z_k = (NIS_k - dof_k) / sqrt(dof_k). White innovations give values
-  // within +-1.96/sqrt(frames), 95 % each. The innovations themselves are not recorded: this sees dependence of their
-  // size only.
+  // within +-1.96/sqrt(frames), 95 % each. The innovations themselves are not recorded: only dependence of their size
+  // is detected.
   std::vector<double> autocorrelation;
   double whiteness_bound = 0;
 };
@@ -30,7 +30,7 @@ struct NisSummary {
 // Gating drops large innovations, so a consistent gated filter sits slightly below 1.
 NisSummary SummariseNis(const std::vector<FrameRecord>& frames);
 
-// One sequence of numbers that should be independent, of equal variance.
+// Test of one sequence of numbers for independence, at equal variance.
 struct Whiteness {
   std::vector<double> autocorrelation;  // at lags 1, 2, ...; about the mean
   double bound = 0;                     // 1.96 / sqrt(N): of each lag by itself, 95 %
@@ -38,7 +38,7 @@ struct Whiteness {
   double p_value = 1;
 };
 
-// Fewer lags where the sequence is short (at most N - 1). A constant sequence has no answer: no lags, p-value 1.
+// Fewer lags where the sequence is short (at most N - 1). A constant sequence is undefined: no lags, p-value 1.
 Whiteness TestWhiteness(const std::vector<double>& sequence, int lags = 10);
 
 // Many runs: each run's p-value is uniform if the innovations are white. Rejected when the runs with a p-value below

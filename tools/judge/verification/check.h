@@ -8,11 +8,11 @@
 
 namespace verification {
 
-// The largest value / bound of what is added; what is not a number is larger than all.
+// The largest value / bound of those added; NaN is larger than all.
 struct Worst {
   double value = 0, bound = 1, ratio = -1;
   std::size_t count = 0;  // of all
-  // Whether it is the worst now.
+  // Adds a value; whether it is the largest so far.
   bool Add(double v, double b) {
     const double r = v == v ? v / b : std::numeric_limits<double>::infinity();
     ++count;
@@ -26,7 +26,7 @@ class Check {
  public:
   Check(std::string name, std::string unit) : name_(std::move(name)), unit_(std::move(unit)) {}
 
-  // |difference| against what it may be at most (> 0); `where`: the file, frame or pixel. What is not a number fails.
+  // |difference| against its bound (> 0); `where`: the file, frame or pixel. NaN fails.
   void Add(double value, double bound, const std::string& where) {
     if (worst_.Add(value, bound)) where_ = where;
     if (!(value <= bound)) failures_.push_back(where);
@@ -35,7 +35,7 @@ class Check {
   void Add(const Worst& worst, const std::string& where) {
     if (worst.count > 0) Add(worst.value, worst.bound, where);
   }
-  // Something that has no size, such as a missing file.
+  // A failure without a size, such as a missing file.
   void Fail(const std::string& what) {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     ++worst_.count;
@@ -44,7 +44,7 @@ class Check {
     worst_.ratio = worst_.value = kInfinity;
   }
 
-  // Of one part of what is checked.
+  // Prefixes the name with the part checked.
   void Prefix(const std::string& part) { name_ = part + ": " + name_; }
 
   const std::string& name() const { return name_; }

@@ -1,5 +1,5 @@
 // Comparisons of the streams of a sequence with each other. Bounds: docs/truth.md.
-// What is not there is not compared: the count() of its check stays as it is.
+// Missing streams are not compared: the count() of their check stays unchanged.
 #pragma once
 
 #include <filesystem>
@@ -26,13 +26,13 @@ class Frames {
   std::size_t count() const { return sequence_.stamps.size(); }
   std::string Stamp(std::size_t frame) const;
 
-  // Empty when the frame has none, or a bad one. The last few frames are kept.
+  // Empty when the frame has none, or an invalid one. The last few frames are kept.
   cv::Mat Picture(const std::string& stream, std::size_t frame);
   // Z [m], CV_32FC1, from depth_exr where there is one, else from depth. Empty when there is neither.
   cv::Mat Depth(std::size_t frame);
   // Grey, 0 ... 255, a little blurred, CV_32FC1: for comparing pictures.
   cv::Mat Smooth(std::size_t frame);
-  // What a depth may be wrong by: half a step of the 16-bit picture, or of a float.
+  // Bound on the error of a depth: half a step of the 16-bit picture, or of a float.
   double DepthError(double Z) const { return Z * 1.2e-7 + (exact_ ? 0 : 1.0001e-4); }
 
   // (x, y, 1) of each pixel's centre, row by row.
@@ -55,8 +55,8 @@ struct Relative {
 Relative Between(const vo::Pose& from, const vo::Pose& to);
 std::optional<Relative> Between(const Sequence& sequence, std::size_t from, std::size_t to);
 
-// From C of one frame to C of another, for each pixel of the one: with the world that stands still or, where the mask
-// `moving` says so, with one of the objects; it does not say with which. Without a mask a pixel may see any of them.
+// From C of one frame to C of another, for each pixel of the first: with the static world or, where the mask `moving`
+// is set, with one of the objects, which it does not identify. Without a mask a pixel may be of any of them.
 class PixelMotions {
  public:
   PixelMotions(Frames& frames, std::size_t from, std::size_t to);
@@ -64,7 +64,7 @@ class PixelMotions {
   bool known() const { return !motions_.empty(); }  // false: a frame has no pose
   bool IsMoving(std::size_t pixel) const { return !mask_.empty() && mask_.data[pixel] != 0; }
   std::span<const Relative> Of(std::size_t pixel) const;
-  // What the mask says that it is not.
+  // Motions excluded by the mask.
   std::span<const Relative> Others(std::size_t pixel) const;
 
  private:
@@ -93,19 +93,19 @@ std::vector<Check> CheckMotion(const Sequence& sequence);
 std::vector<Check> PhotometricChecks();  // before the first comparison
 void ComparePictures(Frames& frames, std::size_t frame, std::vector<Check>& checks);
 
-// What each pixel sees: depth, distance, normals, ids, flow, occlusion, landmarks.
+// Surfaces of the pixels: depth, distance, normals, ids, flow, occlusion, landmarks.
 std::vector<Check> SurfaceChecks(const Sequence& sequence);
 void CompareSurfaces(Frames& frames, std::size_t frame, std::vector<Check>& checks);
 
-// The motions that the point which a pixel sees may have made, between two pictures.
+// The possible motions of a pixel's surface point, between two pictures.
 using Motions = std::function<std::span<const Relative>(std::size_t pixel)>;
 
-// For pixels that `from` sees at one frame and `to`, perhaps of another camera, at another: the difference of their
-// depths over its bound, by `add`.
+// For pixels of `from` at one frame that are visible in `to`, perhaps of another camera, at another: the difference of
+// their depths over its bound, by `add`.
 void MatchDepths(Frames& from, std::size_t frame, Frames& to, std::size_t to_frame, const Motions& motions,
                  const std::function<void(std::size_t pixel, double ratio)>& add);
 
-// The mask `stream` of what is hidden there.
+// The mask `stream` of surfaces hidden there.
 void CompareHidden(Frames& from, std::size_t frame, const std::string& stream, Frames& to, std::size_t to_frame,
                    const Motions& motions, Check& check);
 

@@ -94,7 +94,7 @@ std::vector<std::string> ObjectNames(const fs::path& folder) {
   return names;
 }
 
-// A manifest that says something else than the simulator's is a failure of `files`.
+// Reads the manifest; one unlike the simulator's is a failure of `files`.
 void ReadManifest(const fs::path& file, Sequence& s, Check& files) {
   const std::string text = base::ReadFile(file).value_or("");
   if (const std::string problem = limits::JsonProblem(text); !problem.empty())
@@ -173,7 +173,7 @@ cv::Mat ReadFlo(const fs::path& path) {
   return flow;
 }
 
-// There is a ray for each of the camera's pixels; a picture of its size, of so many bytes, must be one that is read.
+// Checks the camera's size, since each pixel has a ray: a picture of that size must be within the reader's limits.
 void RequirePossibleSize(const Sequence& s) {
   const std::vector<Entry>& pictures = s.images.at("rgb");
   std::error_code error;

@@ -22,14 +22,14 @@ struct Entry {
   std::vector<double> numbers;
 };
 
-// What the manifest says of the motion: how rough the path is between two stamps. Absent: taken for smooth.
+// Roughness of the path between two stamps, from the manifest. Absent: taken for smooth.
 struct Roughness {
   bool sampled = false;                  // from white acceleration, between knots by cubics
   double position = 0, orientation = 0;  // its density: square roots of power spectral densities [m/s^1.5, rad/s^1.5]
   double knot_step_s = 0;
 };
 
-// Something that moves, by objects/NAME.txt: T_WO at the frames' stamps.
+// A moving object, by objects/NAME.txt: T_WO at the frames' stamps.
 struct Object {
   std::string name;
   std::vector<vo::Pose> poses;  // the identity where there is none
@@ -55,7 +55,7 @@ struct Sequence {
   std::vector<bool> has_pose;
   std::vector<Object> objects;
   Roughness roughness;
-  bool rolling_shutter = false;  // says the manifest: each row has a time of its own
+  bool rolling_shutter = false;  // from the manifest: each row has its own time
   std::size_t surfaces = 0;      // how many the legend has, whose ids are 1, 2, ...
   std::vector<int> classes;      // of each instance, by the legend of labels, whose ids are 1, 2, ...; of 0: 0
   std::vector<Entry> landmarks;  // numbers: id, position, surface id; the stamp is 0
@@ -81,9 +81,9 @@ std::vector<RigCamera> ReadRig(const std::filesystem::path& folder);
 std::vector<Entry> ReadTable(const std::filesystem::path& file, std::size_t numbers, bool stamped, bool increasing,
                              char separator, Check& files);
 
-// Reads all that is text. What is malformed is a failure of `files`, lists that disagree in their stamps one of
-// `stamps`, both with file and line. Throws std::runtime_error where there is no sequence at all: no folder, no
-// rgb.txt, no groundtruth.txt, no camera.yaml, or a camera of more pixels than a picture may have.
+// Reads all text files. Malformed lines are failures of `files`, lists that disagree in their stamps one of `stamps`,
+// both with file and line. Throws std::runtime_error where there is no sequence at all: no folder, no rgb.txt, no
+// groundtruth.txt, no camera.yaml, or a camera of more pixels than a picture may have.
 // `manifest`: the folder that has it.
 Sequence ReadSequence(const std::filesystem::path& folder, const std::filesystem::path& manifest, Check& files,
                       Check& stamps);
@@ -93,7 +93,7 @@ Sequence ReadBody(const std::filesystem::path& folder, Check& files);
 // The class of each instance by labels.json, 0 of instance 0. Throws std::runtime_error.
 std::vector<int> ReadLegend(const std::filesystem::path& file);
 
-// One picture: 8-bit (grey or colour) and 16-bit PNG as they are, EXR as CV_32FC1 or CV_32FC3 (R, G, B), .flo as
+// One picture: 8-bit (grey or colour) and 16-bit PNG unconverted, EXR as CV_32FC1 or CV_32FC3 (R, G, B), .flo as
 // CV_32FC2. Throws std::runtime_error naming the file.
 cv::Mat ReadPicture(const std::filesystem::path& file);
 

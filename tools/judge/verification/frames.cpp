@@ -100,7 +100,7 @@ PixelMotions::PixelMotions(Frames& frames, std::size_t from, std::size_t to) : m
   motions_.push_back(*world);
   for (const Object& object : s.objects) {
     if (!object.has_pose[from] || !object.has_pose[to]) continue;
-    // C of `from` to O, which stays; O to C of `to`.
+    // C of `from` to O, which is fixed; O to C of `to`.
     const vo::Pose &camera = s.poses[from], &other = s.poses[to], &now = object.poses[from], &then = object.poses[to];
     const Eigen::Quaterniond q_OC = now.q_WC.conjugate() * camera.q_WC, q_CO = other.q_WC.conjugate() * then.q_WC;
     const Eigen::Vector3d p_OC = now.q_WC.conjugate() * (camera.p_WC - now.p_WC),

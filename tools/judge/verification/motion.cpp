@@ -10,10 +10,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSigmas = 6;        // of what is random: one line in 5 10^8 is beyond
+constexpr double kSigmas = 6;        // bound on random errors: exceeded by one line in 5 10^8
 constexpr double kText = 1e-11;      // rounding of the texts' twelve decimals, and of the sums here
 constexpr std::ptrdiff_t kNear = 5;  // neighbours from which the curvature of a rate follows
-constexpr double kSafety = 2;        // on that curvature; below 3, so that one wrong line cannot excuse itself
+constexpr double kSafety = 2;        // on that curvature; below 3, so that a single wrong line is still detected
 
 struct Rate {
   double t_s;
@@ -32,7 +32,7 @@ std::vector<Rate> Rates(const std::vector<Entry>& entries, std::size_t first, st
   return rates;
 }
 
-// The largest second derivative that the rates near k .. k + 1 show, by divided differences.
+// The largest second derivative of the rates near k .. k + 1, by divided differences.
 double Bend(const std::vector<Rate>& rates, std::size_t k) {
   const auto n = static_cast<std::ptrdiff_t>(rates.size()), at = static_cast<std::ptrdiff_t>(k);
   double bend = 0;
@@ -45,8 +45,8 @@ double Bend(const std::vector<Rate>& rates, std::size_t k) {
   return bend;
 }
 
-// int of a rate from one line to the next by the trapezoidal rule misses dt^3 / 12 of its second derivative. What white
-// acceleration of density s adds between two exact values: s sqrt(dt^3 / 12) per axis of a position.
+// Error of the trapezoidal rule from one line to the next: dt^3 / 12 of the rate's second derivative. White
+// acceleration of density s adds s sqrt(dt^3 / 12) per axis of a position between two exact values.
 struct Step {
   double dt;
   std::string where;
@@ -81,7 +81,7 @@ void CheckVelocities(const Sequence& s, Check& position, Check& orientation) {
     const double rule = kSafety * dt * dt * dt / 12, root = std::sqrt(3 * dt * dt * dt / 12);
     const Vector3d moved = b.p_WC - a.p_WC - dt / 2 * (v[k].value + v[k + 1].value);
     position.Add(moved.norm(), rule * Bend(v, k) + kSigmas * root * s.roughness.position + kText, steps[k].where);
-    // Magnus' second term: body rates that change direction turn more; the next is below |w|^2 dt^2 of the rule.
+    // Second term of the Magnus series: body rates of changing direction; the next is below |w|^2 dt^2 of the rule.
     const Vector3d turned = vo::Log(a.q_WC.conjugate() * b.q_WC) - dt / 2 * (w[k].value + w[k + 1].value) -
                             dt * dt / 12 * w[k].value.cross(w[k + 1].value);
     const double noise = s.roughness.orientation * (1 + dt * w[k].value.norm());
@@ -148,8 +148,8 @@ void Advance(const Imu& imu, std::int64_t from_ns, std::int64_t to_ns, State& x)
   x.q = q1;
 }
 
-// Dead reckoning from one frame's pose and velocity to the next frame's stamp. Also: how far the readings change on the
-// way: the largest difference of neighbours, and of neighbouring differences.
+// Dead reckoning from one frame's pose and velocity to the next frame's stamp. Also the variation of the readings on
+// the way: the largest difference of neighbours, and of neighbouring differences.
 bool Reckon(const Imu& imu, std::int64_t from_ns, std::int64_t to_ns, State& x, double (&first)[2],
             double (&second)[2]) {
   const std::vector<Entry>& r = imu.readings;
@@ -192,8 +192,9 @@ void CheckImu(const Sequence& s, Check& velocity, Check& orientation) {
     const State end = state(steps[k].frame + 1, v[k + 1]);
     double first[2] = {}, second[2] = {};
     if (!Reckon(s.imu, v[k].stamp_ns, v[k + 1].stamp_ns, x, first, second)) continue;
-    // Straight lines between readings miss period^2 / 8 of the second derivative at most; a mean used for part of its
-    // period, at either end, by what neighbours differ by. The path's own roughness between readings.
+    // Linear interpolation between readings has an error of at most period^2 / 8 of the second derivative; a mean used
+    // for part of its period, at either end, of the difference of neighbours. The path's own roughness between
+    // readings.
     const double t = static_cast<double>(v[k + 1].stamp_ns) * 1e-9;
     const auto bound = [&](std::size_t c, double noise, double walk, double density) {
       const double rule = s.imu.mean ? 2 * period * first[c] + dt * second[c] / 8 : kSafety * dt * second[c] / 8;
@@ -208,7 +209,7 @@ void CheckImu(const Sequence& s, Check& velocity, Check& orientation) {
     const double arm = s.imu.T_CI.p_WC.norm();
     const double gain = bound(1, s.imu.accelerometer_noise, s.imu.accelerometer_walk,
                               s.roughness.position + arm * s.roughness.orientation);
-    double force = 0;  // turned wrongly, what is felt goes astray
+    double force = 0;  // largest |f|, which a wrong rotation turns
     for (const Entry& reading : s.imu.readings) {
       if (reading.stamp_ns >= v[k].stamp_ns && reading.stamp_ns <= v[k + 1].stamp_ns)
         force = std::max(force, Numbers(reading, 3).norm());

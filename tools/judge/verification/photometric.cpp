@@ -15,7 +15,7 @@ using Eigen::Vector4d;
 
 constexpr double kSigmas = 6;
 constexpr double kBlur = 1.5;  // of Frames::Smooth [px]
-// [px] what bilinear interpolation and pixels' squares displace at most; measured
+// [px] largest displacement by bilinear interpolation and the pixels' area; measured
 constexpr double kInterpolation = 0.03;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
@@ -26,7 +26,7 @@ double Median(std::vector<double>& values) {
   return *middle;
 }
 
-// A pixel of this frame, where its surface point is in the partner's picture, and what is there.
+// A pixel of this frame, the image of its surface point in the partner's picture, and the value there.
 struct Sample {
   int x, y;
   double here, there;
@@ -43,14 +43,14 @@ struct Pair {
   double bend = 0;  // median change of the motion in the picture from one frame to the next [px]
 };
 
-// Pixels of `frame` that `partner` sees too: where its depth around the projection is that of the point.
+// Pixels of `frame` that are visible in `partner`: where its depth around the projection is that of the point.
 Pair Match(Frames& frames, std::size_t frame, std::size_t partner) {
   Pair pair;
   const cv::Mat depth = frames.Depth(frame), other_depth = frames.Depth(partner), here = frames.Smooth(frame),
                 there = frames.Smooth(partner);
   const auto move = Between(frames.sequence(), frame, partner);
   if (depth.empty() || other_depth.empty() || here.empty() || there.empty() || !move) return pair;
-  // Moving objects are not placed by the camera's poses; without a mask they are not known.
+  // Moving objects do not follow the camera's poses alone; without a mask they are unknown.
   const cv::Mat moving = frames.Picture("moving", frame), moving_there = frames.Picture("moving", partner);
   const bool has_masks = !moving.empty() && !moving_there.empty();
   if (!frames.sequence().objects.empty() && !has_masks) return pair;
@@ -100,7 +100,7 @@ Pair Match(Frames& frames, std::size_t frame, std::size_t partner) {
   return pair;
 }
 
-// The shift of the whole picture, with a gain and an offset of brightness, that explains the differences best: least
+// The shift of the whole picture, with a gain and an offset of brightness, that best explains the differences: least
 // squares, large differences weighted down (Huber).
 struct Offset {
   double size = 0, sigma = 0;  // [px]
@@ -165,15 +165,15 @@ std::vector<Check> PhotometricChecks() {
 }
 
 void ComparePictures(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
-  if (frames.sequence().rolling_shutter) return;  // depth is that of the stamp, rows are not
+  if (frames.sequence().rolling_shutter) return;  // depth is that of the stamp, rows have other times
   constexpr std::size_t kEnough = 500;
   double offset = kNone, offset_bound = 1, order = kNone;
   for (const std::size_t partner : Partners(frame, frames.count())) {
     const Pair pair = Match(frames, frame, partner);
     if (pair.samples.size() < kEnough) continue;
     const Offset fit = Fit(pair.samples);
-    // The mean over an exposure (at most the time between two frames) of a motion that bends by `bend` lies up to bend
-    // / 24 beside the middle, in either picture.
+    // The mean over an exposure (at most the time between two frames) of a motion of curvature `bend` deviates by up to
+    // bend / 24 from the middle, in either picture.
     const double bound = kInterpolation + kSigmas * fit.sigma + pair.bend / 12;
     if (fit.size / bound < offset / offset_bound) offset = fit.size, offset_bound = bound;
     // Another picture in place of this one must fit worse.

@@ -30,7 +30,7 @@ void ComparePoses(const Sequence& body, const RigCamera& camera, const Sequence&
   }
 }
 
-// What both see of the world that stands still is in one place.
+// Static surfaces seen by both cameras must coincide.
 void CompareDepths(Part& a, Part& b, std::size_t k, const std::string& where, Check& check) {
   if (!a.sequence.has_pose[k] || !b.sequence.has_pose[k]) return;
   const cv::Mat moving = a.frames.Picture("moving", k);

@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Of the pixels that a check looks at, so many may be beyond their bound: where several surfaces meet within a pixel,
-// the surface between neighbours is not known.
+// Fraction of a check's pixels that may exceed their bound: where several surfaces meet within a pixel, the surface
+// between neighbours is unknown.
 constexpr double kEdges = 1e-3;
 constexpr double kRayError = 2e-6;  // of the pixel through which a point is seen [px], and of a float's flow
 constexpr double kFloat = 1.2e-7;   // twice a float's rounding
@@ -41,7 +41,7 @@ struct Share {
   std::size_t bad = 0, count = 0;
   void Add(bool good) { bad += !good, ++count; }
   void Into(Check& check, const std::string& where, double edges = kEdges) const {
-    // A handful of pixels may be at edges in any picture.
+    // A few pixels may be at edges in any picture.
     if (count >= 100)
       check.Add(static_cast<double>(bad) / static_cast<double>(count), edges + 3.0 / static_cast<double>(count), where);
   }
@@ -68,7 +68,7 @@ DepthRange RangeAround(const cv::Mat& depth, double x, double y, int grow) {
   return range;
 }
 
-// A point at depth Z is what the pixels around it see: a surface between them bends no more than it rises.
+// Whether a point at depth Z agrees with the pixels around it: a surface between them curves no more than it rises.
 bool IsSeen(const DepthRange& range, double Z, double error) {
   const double rise = range.max - range.min + error;
   return Z >= range.min - rise && Z <= range.max + rise;
@@ -90,8 +90,8 @@ Vector2d Between(const Frames& frames, const Corners& c, const cv::Mat& picture,
   return at;
 }
 
-// What is seen at a place of a picture, against a point X = Z ray + t there. All in inverse depth, which is linear in
-// the plane of rays (X / Z, Y / Z) where a plane is seen [1/m].
+// Depth at a place of a picture, compared with a point X = Z ray + t there. All in inverse depth, which is linear in
+// (X / Z, Y / Z) on a plane [1/m].
 struct DepthMatch {
   double difference, bound, bend;  // bound: from rounding; bend: of the four pixels, from a plane
 };
@@ -106,7 +106,7 @@ std::optional<DepthMatch> MatchAt(const Frames& frames, const cv::Mat& there, co
   const double a = at.x(), b = at.y();
   const double seen = (1 - b) * ((1 - a) * w[0] + a * w[1]) + b * ((1 - a) * w[2] + a * w[3]);
   const vo::Camera& camera = frames.sequence().camera;
-  // How the pixel moves when Z does, times the slope there.
+  // Displacement of the pixel by the error of Z, times the slope there.
   const Vector2d moved = camera.Project(X + frames.DepthError(Z) * ray) - camera.Project(X);
   const double slope = std::max(std::abs(w[1] - w[0]), std::abs(w[2] - w[0]));
   const double rounding = frames.DepthError(X.z()) / (X.z() * X.z());
@@ -139,7 +139,7 @@ void Distance(Frames& frames, std::size_t frame, Check& check) {
   check.Add(worst, "distance " + frames.Stamp(frame));
 }
 
-// The plane through four neighbours, where they and the middle lie on one to what their depths may be wrong by.
+// Normal of the plane through four neighbours, where they and the middle are coplanar within their depth errors.
 void Normals(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
   const cv::Mat normals = frames.Picture("normals", frame), depth = frames.Depth(frame);
   if (normals.empty() || depth.empty()) return;
@@ -173,7 +173,7 @@ void Normals(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
     if (!plane) continue;
     const double sine = across.normalized().cross(down.normalized()).norm();
     const double bound = 4 * error * (1 / across.norm() + 1 / down.norm()) / sine + 1e-6;
-    if (bound > 0.3) continue;  // too coarse to say anything
+    if (bound > 0.3) continue;  // too coarse for a comparison
     share.Add((n - (fit.dot(rays[i]) > 0 ? Vector3d(-fit) : fit)).norm() <= bound);
   }
   checks[kFacing].Add(facing, "normals " + frames.Stamp(frame));
@@ -194,8 +194,8 @@ void SurfaceIds(Frames& frames, std::size_t frame, Check& check) {
   check.Add(static_cast<double>(bad), 0.5, "surface_id " + frames.Stamp(frame));
 }
 
-// A point that is seen here lies, in a neighbouring frame, on what is seen there: the inverse depth of a plane is
-// linear in the picture. Half of the samples must be within what rounding explains; the others may be hidden there.
+// A visible point lies, in a neighbouring frame, on the surface seen there: the inverse depth of a plane is linear in
+// the picture. Half of the samples must be within the rounding; the others may be hidden there.
 void DepthInNeighbours(Frames& frames, std::size_t frame, Check& check) {
   double best[2] = {kNone, kNone};  // of the world, of objects
   for (const std::size_t partner : Partners(frame, frames.count())) {
@@ -218,8 +218,8 @@ void DepthInNeighbours(Frames& frames, std::size_t frame, Check& check) {
   if (best[1] < kNone) check.Add(best[1], 1, "depth " + frames.Stamp(frame) + ", objects");
 }
 
-// A pixel fits where one of the motions that it may have explains its flow. One that fits those of the others alone
-// shows that the mask is wrong.
+// A pixel is consistent where one of its possible motions explains its flow. One that is consistent with the excluded
+// motions only shows that the mask is wrong.
 void Flow(Frames& frames, std::size_t frame, const std::string& stream, std::size_t to, Check& check,
           std::vector<Check>& checks) {
   const cv::Mat flow = frames.Picture(stream, frame), depth = frames.Depth(frame);
@@ -276,8 +276,8 @@ void Flow(Frames& frames, std::size_t frame, const std::string& stream, std::siz
   }
 }
 
-// What moves by f to the next frame comes back by the flow there, bilinear between four pixels; that misses no more
-// than by what the pixels around depart from a plane, on one surface (by far) and between two.
+// The flow f to the next frame is inverted by the flow there, bilinear between four pixels; with an error of at most
+// the deviation of the pixels around from a plane, on one surface (by far) and between two.
 void FlowThereAndBack(Frames& frames, std::size_t frame, Check& check) {
   const cv::Mat forward = frames.Picture("flow", frame), hidden = frames.Picture("occlusion", frame),
                 backward = frames.Picture("flow_backward", frame + 1);
@@ -386,7 +386,7 @@ void CompareHidden(Frames& from, std::size_t frame, const std::string& stream, F
     const double Z = At(here, i);
     const bool is_hidden = hidden.at<std::uint8_t>(static_cast<int>(i)) != 0;
     if (Z == 0) continue;
-    // Whether the mask of what is hidden is right, if the pixel moves so; none: at the picture's border.
+    // Whether the occlusion mask is right, if the pixel moves so; none: at the picture's border.
     const auto is_right = [&](const Relative& move) -> std::optional<bool> {
       const Vector3d ray = move.R * from.rays()[i], X = Z * ray + move.t;
       const Vector2d pixel = X.z() > 0 ? camera.Project(X) : Vector2d(-9, -9);
@@ -394,7 +394,7 @@ void CompareHidden(Frames& from, std::size_t frame, const std::string& stream, F
       if (!camera.IsUsable(pixel, 0.001)) return std::nullopt;
       const double error = 2 * to.DepthError(X.z()) + 1e-5 * X.z();
       if (!is_hidden) return IsSeen(RangeAround(there, pixel.x(), pixel.y(), 1), X.z(), error);
-      // It is not hidden where just this point is seen, on an even surface.
+      // It is visible where this very point is seen, on a smooth surface.
       const auto c = CornersAt(there, pixel.x(), pixel.y());
       const auto match = c ? MatchAt(to, there, *c, Z, ray, X) : std::nullopt;
       return !match || match->bend > 2 * match->bound || match->difference > match->bound;

@@ -1,4 +1,4 @@
-// Verification of a sequence: its streams against each other, with nothing of the simulator.
+// Verification of a sequence: its streams against each other, independent of the simulator.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace verification {
 
-// All checks, those that found nothing to compare included (count() 0). `progress` is called after each frame with the
-// number done and that of all. Throws std::runtime_error where there is no sequence.
+// All checks, including those without anything to compare (count() 0). `progress` is called after each frame with the
+// number done and the total. Throws std::runtime_error where there is no sequence.
 std::vector<Check> Verify(const std::filesystem::path& sequence,
                           const std::function<void(std::size_t, std::size_t)>& progress = {});
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double kGap_s = 0.02;
 constexpr double kSegmentTolerance_m = 0.5;
 
-// For a quaternion that is not quite unit this is not quite a rotation; the tool's own formula then decides.
+// Rotation by the tool's own formula, which for a quaternion of inexact norm is not exactly a rotation.
 Eigen::Matrix3d Rotation(const Eigen::Quaterniond& q) {
   Eigen::Matrix3d cross;
   cross << 0, -q.z(), q.y(), q.z(), 0, -q.x(), -q.y(), q.x(), 0;
@@ -34,7 +34,7 @@ struct Pose {
   Eigen::Vector3d p;
 };
 
-// Forward through both lists: each pose of the estimate takes the nearest true pose that no earlier one went past.
+// Forward through both lists: each pose of the estimate takes the nearest true pose not before that of an earlier one.
 MatchedTrajectories Associate(const Trajectory& estimate, const Trajectory& truth) {
   const auto seconds = [](const StampedPose& pose) { return SecondsAsRead(pose.stamp_ns); };
   MatchedTrajectories matched;

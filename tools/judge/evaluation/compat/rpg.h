@@ -20,7 +20,8 @@ struct RpgResult {
 
 // Sub-trajectories of 10, 20, 30, 40 and 50 % of the length of the truth through the associated poses, cut to
 // centimetres, unless lengths are given.
-// Alignment over all frames: its align_type none, se3, sim3 or posyaw (yaw). Throws InputError where estimate and truth do not overlap in time.
+// Alignment over all frames: its align_type none, se3, sim3 or posyaw (yaw). Throws InputError where estimate and truth
+// do not overlap in time.
 RpgResult ComputeRpg(const Trajectory& estimate, const Trajectory& truth, Alignment alignment,
                      std::vector<double> lengths_m = {});
 
