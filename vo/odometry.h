@@ -25,7 +25,7 @@ class Odometry {
   Odometry(Odometry&&) noexcept;
 
   // Frames in order of time. Throws std::invalid_argument when the stamp does not increase, or the image has another
-  // size than the camera; FilterFault (vo/filter/watched_filter.h) with the frame on an internal error (a bug).
+  // size than the camera; FilterFault (vo/filter/checked_filter.h) with the frame on an internal error (a bug).
   Estimate Track(const Frame& frame);
   // The same for a frame that was prepared elsewhere (ReadAhead).
   Estimate Track(const PreparedFrame& frame);

@@ -12,9 +12,9 @@
 
 #include "vo/base/source.h"
 #include "vo/base/stopwatch.h"
+#include "vo/filter/checked_filter.h"
 #include "vo/filter/consensus.h"
 #include "vo/filter/landmark_table.h"
-#include "vo/filter/watched_filter.h"
 #include "vo/filter_adapter.h"
 #include "vo/start_trajectory.h"
 
@@ -132,7 +132,7 @@ struct PointOdometry::Impl {
 
   Camera camera;
   Params params;
-  WatchedFilter filter;
+  CheckedFilter filter;
   ScaleAmbiguity scale;
   StartTrajectory start;
   std::vector<BeliefComponent> mixture;               // of the answer, where the scale is unknown

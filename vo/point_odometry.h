@@ -35,7 +35,7 @@ class PointOdometry {
   // A new id becomes a landmark; one unseen for params.landmark.forget_after frames is dropped. Observations at pixels
   // that are not invertible are ignored; outliers are rejected with params.filter.reject_outliers. Throws
   // std::invalid_argument, and changes nothing, when the stamp does not increase, an id is not unique or a pixel is not
-  // finite; FilterFault (vo/filter/watched_filter.h) on an internal error (a bug).
+  // finite; FilterFault (vo/filter/checked_filter.h) on an internal error (a bug).
   Estimate Track(const PointFrame& frame);
 
   // As of Odometry.

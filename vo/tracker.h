@@ -10,7 +10,7 @@
 
 #include "vo/base/params.h"
 #include "vo/base/result.h"
-#include "vo/filter/watched_filter.h"
+#include "vo/filter/checked_filter.h"
 #include "vo/frontend/adaptive_association.h"
 #include "vo/frontend/association.h"
 #include "vo/frontend/new_features.h"
@@ -66,7 +66,7 @@ class Tracker {
   Params params_;
   Prior prior_;
   std::uint64_t seed_;
-  WatchedFilter filter_;
+  CheckedFilter filter_;
   ScaleAmbiguity scale_;
   StartTrajectory start_;
   RollingShutter shutter_;

@@ -81,11 +81,13 @@ std::vector<std::string> PointWorld::Warnings() const {
   return {};
 }
 
-PointWorld::Eye PointWorld::EyeOf(const Truth& truth) { return {truth, glm::transpose(glm::mat3_cast(truth.q_WC))}; }
+PointWorld::CameraState PointWorld::CameraOf(const Truth& truth) {
+  return {truth, glm::transpose(glm::mat3_cast(truth.q_WC))};
+}
 
 // X_C ~ R_CW (X_W - w p): for X_W = rho p_A + R_WA m, w = rho the anchored ray of an inverse-depth landmark.
-std::optional<PointWorld::View> PointWorld::See(const Eye& eye, const glm::dvec4& X_W) const {
-  const glm::dvec3 X_C = eye.R_CW * (glm::dvec3(X_W) - X_W.w * eye.truth.p_WC);
+std::optional<PointWorld::View> PointWorld::See(const CameraState& camera, const glm::dvec4& X_W) const {
+  const glm::dvec3 X_C = camera.R_CW * (glm::dvec3(X_W) - X_W.w * camera.truth.p_WC);
   if (!(X_C.z > 0) || X_C.z < world_.min_depth_m * X_W.w) return std::nullopt;
   const View view{camera_.Project(X_C), X_C};
   if (!InImage(camera_.params(), view.pixel)) return std::nullopt;
@@ -96,22 +98,23 @@ std::optional<PointWorld::View> PointWorld::See(const Eye& eye, const glm::dvec4
 }
 
 std::optional<glm::dvec2> PointWorld::Project(const PointLandmark& landmark, std::int64_t frame) const {
-  const std::optional<View> view = See(EyeOf(TruthAt(frame)), landmark.X_W);
+  const std::optional<View> view = See(CameraOf(TruthAt(frame)), landmark.X_W);
   return view ? std::optional(view->pixel) : std::nullopt;
 }
 
 // How far the image moves during the exposure: X_C' = -w_C x X_C - w v_C, half of it before and after.
-double PointWorld::MovedPx(const Eye& eye, const PointLandmark& landmark, const View& view) const {
+double PointWorld::MovedPx(const CameraState& camera, const PointLandmark& landmark, const View& view) const {
   const double half_s = world_.measurement.blur_exposure_s / 2;
-  const glm::dvec3 rate = -glm::cross(eye.truth.w_WC_C, view.X_C) - landmark.X_W.w * (eye.R_CW * eye.truth.v_WC);
+  const glm::dvec3 rate =
+      -glm::cross(camera.truth.w_WC_C, view.X_C) - landmark.X_W.w * (camera.R_CW * camera.truth.v_WC);
   const glm::dvec3 before = view.X_C - half_s * rate, after = view.X_C + half_s * rate;
   if (!(before.z > 0) || !(after.z > 0)) return std::hypot(camera_.width(), camera_.height());  // it passes the camera
   return glm::distance(camera_.Project(before), camera_.Project(after));
 }
 
-void PointWorld::Follow(std::int64_t frame, const Eye& eye) {
+void PointWorld::Follow(std::int64_t frame, const CameraState& camera) {
   for (Track& track : tracks_) {
-    track.view = See(eye, landmarks_[static_cast<std::size_t>(track.id)].X_W);
+    track.view = See(camera, landmarks_[static_cast<std::size_t>(track.id)].X_W);
     if (track.view) track.last_in_view = frame;
   }
   std::erase_if(tracks_, [&](const Track& track) {
@@ -122,7 +125,7 @@ void PointWorld::Follow(std::int64_t frame, const Eye& eye) {
 }
 
 // The place in the image is uniform, the inverse depth normal.
-glm::dvec4 PointWorld::DrawFromPrior(const Eye& eye) const {
+glm::dvec4 PointWorld::DrawFromPrior(const CameraState& camera) const {
   const auto id = static_cast<std::uint32_t>(landmarks_.size());
   const Words place = RandomWords(key_, Stream::point_place, 0, id, 0);
   const Words depth = RandomWords(key_, Stream::point_place, 0, id, 1);
@@ -130,8 +133,8 @@ glm::dvec4 PointWorld::DrawFromPrior(const Eye& eye) const {
   const glm::dvec2 pixel(margin - 0.5 + Uniform(place[0], place[1]) * (camera_.width() - 2 * margin),
                          margin - 0.5 + Uniform(place[2], place[3]) * (camera_.height() - 2 * margin));
   const double rho = scale_ * (world_.inverse_depth + world_.inverse_depth_sigma * Normals(depth)[0]);
-  const glm::dvec3 ray = glm::transpose(eye.R_CW) * glm::dvec3(camera_.Undistort(pixel), 1.0);
-  return {rho * eye.truth.p_WC + ray, rho};
+  const glm::dvec3 ray = glm::transpose(camera.R_CW) * glm::dvec3(camera_.Undistort(pixel), 1.0);
+  return {rho * camera.truth.p_WC + ray, rho};
 }
 
 void PointWorld::Begin(std::int64_t frame, const glm::dvec4& X_W, std::optional<std::size_t> point, const View& view) {
@@ -141,13 +144,13 @@ void PointWorld::Begin(std::int64_t frame, const glm::dvec4& X_W, std::optional<
 }
 
 // New landmarks until `count` are in view, as far as there are any.
-void PointWorld::Fill(std::int64_t frame, const Eye& eye) {
+void PointWorld::Fill(std::int64_t frame, const CameraState& camera) {
   auto room = world_.count - std::count_if(tracks_.begin(), tracks_.end(), [](const Track& t) { return !!t.view; });
   if (world_.landmarks == Landmarks::prior) {
     for (; room > 0; --room) {
-      const glm::dvec4 X_W = DrawFromPrior(eye);
+      const glm::dvec4 X_W = DrawFromPrior(camera);
       // z = 1 up to scale: it is in view whatever its inverse depth. min_depth does not apply to a prior.
-      const glm::dvec3 X_C = eye.R_CW * (glm::dvec3(X_W) - X_W.w * eye.truth.p_WC);
+      const glm::dvec3 X_C = camera.R_CW * (glm::dvec3(X_W) - X_W.w * camera.truth.p_WC);
       Begin(frame, X_W, std::nullopt, {camera_.Project(X_C), X_C});
     }
     return;
@@ -155,7 +158,7 @@ void PointWorld::Fill(std::int64_t frame, const Eye& eye) {
   for (std::size_t k = 0; k < points_.size() && room > 0; ++k) {
     if (followed_[k]) continue;
     const glm::dvec4 X_W(points_[k], 1.0);
-    const std::optional<View> view = See(eye, X_W);
+    const std::optional<View> view = See(camera, X_W);
     if (!view) continue;
     followed_[k] = true;
     Begin(frame, X_W, k, *view);
@@ -167,9 +170,9 @@ std::optional<PointFrame> PointWorld::Next() {
   if (next_ >= frames_) return std::nullopt;
   PointFrame frame{next_, StampNs(next_), TruthAt(next_), {}};
   ++next_;
-  const Eye eye = EyeOf(frame.truth);
-  Follow(frame.index, eye);
-  Fill(frame.index, eye);
+  const CameraState camera = CameraOf(frame.truth);
+  Follow(frame.index, camera);
+  Fill(frame.index, camera);
   const PointMeasurement& how = world_.measurement;
   for (const Track& track : tracks_) {
     if (!track.view) continue;
@@ -178,7 +181,7 @@ std::optional<PointFrame> PointWorld::Next() {
     const std::optional<glm::dvec2> seen =
         landmark.first_frame == frame.index
             ? MeasureFirst(how, key, track.view->pixel)
-            : Measure(how, camera_.params(), key, track.view->pixel, MovedPx(eye, landmark, *track.view));
+            : Measure(how, camera_.params(), key, track.view->pixel, MovedPx(camera, landmark, *track.view));
     if (seen) frame.observations.push_back({track.id, seen->x, seen->y});
   }
   return frame;

@@ -79,17 +79,17 @@ class PointWorld {
     std::int64_t last_in_view = 0;
     std::optional<View> view;
   };
-  struct Eye {  // the present camera
+  struct CameraState {  // the present camera
     Truth truth;
     glm::dmat3 R_CW{1.0};
   };
 
-  static Eye EyeOf(const Truth& truth);
-  std::optional<View> See(const Eye& eye, const glm::dvec4& X_W) const;
-  double MovedPx(const Eye& eye, const PointLandmark& landmark, const View& view) const;
-  void Follow(std::int64_t frame, const Eye& eye);
-  void Fill(std::int64_t frame, const Eye& eye);
-  glm::dvec4 DrawFromPrior(const Eye& eye) const;
+  static CameraState CameraOf(const Truth& truth);
+  std::optional<View> See(const CameraState& camera, const glm::dvec4& X_W) const;
+  double MovedPx(const CameraState& camera, const PointLandmark& landmark, const View& view) const;
+  void Follow(std::int64_t frame, const CameraState& camera);
+  void Fill(std::int64_t frame, const CameraState& camera);
+  glm::dvec4 DrawFromPrior(const CameraState& camera) const;
   void Begin(std::int64_t frame, const glm::dvec4& X_W, std::optional<std::size_t> point, const View& view);
 
   Scenario scenario_;

@@ -10,7 +10,7 @@ namespace long_run {
 //          full, and of the last ones. Each is divided by the same percentile of a fixed calculation made after every
 //          frame, which cancels changes in the machine's speed. Bound on the growth: 25 %; printed.
 // Memory:  resident, from frame `early` on at most 1 % above that of frame `early` (2 % up to 10 000 frames).
-// A non-finite estimate ends the run (vo/filter/watched_filter.h).
+// A non-finite estimate ends the run (vo/filter/checked_filter.h).
 struct Length {
   std::size_t frames = 0, early = 0, window = 0;
 };

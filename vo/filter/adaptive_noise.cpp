@@ -89,7 +89,7 @@ MotionInput Widened(const MotionInput& used, const InnovationRatios& ratios) {
   return wide;
 }
 
-std::optional<MotionInput> AsShown(const MotionInput& used, const InnovationRatios& ratios) {
+std::optional<MotionInput> Inflated(const MotionInput& used, const InnovationRatios& ratios) {
   if (std::max(ratios.position, ratios.orientation) <= kUnderstated) return std::nullopt;
   MotionInput shown = used;
   if (ratios.position > kUnderstated) shown.position_noise *= ratios.position;

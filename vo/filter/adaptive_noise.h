@@ -34,6 +34,6 @@ class AdaptiveNoise {
 // The input of a failed prediction with its noise, at least that of MotionParams, multiplied by the frame's ratios.
 MotionInput Widened(const MotionInput& used, const InnovationRatios& ratios);
 // The input with its noise multiplied by the frame's ratios, where these are significantly large; none elsewhere.
-std::optional<MotionInput> AsShown(const MotionInput& used, const InnovationRatios& ratios);
+std::optional<MotionInput> Inflated(const MotionInput& used, const InnovationRatios& ratios);
 
 }  // namespace vo

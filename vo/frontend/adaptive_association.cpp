@@ -136,7 +136,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
   }
   const InnovationRatios shown = RatiosOf(trial.association);
   noise_.Learn(trial.association.predicted, trial.association.agreed, trial.input, first_failed || trial.repeated > 0);
-  if (const auto more = AsShown(trial.input, shown)) filter.PredictAgain(*more);
+  if (const auto more = Inflated(trial.input, shown)) filter.PredictAgain(*more);
   return std::move(trial.association);
 }
 

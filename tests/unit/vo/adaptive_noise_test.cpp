@@ -83,8 +83,8 @@ TEST(AdaptiveNoise, ShapeIsThatOfTheMotionInTheCamera) {
 
 TEST(AdaptiveNoise, NoiseThatWasUnderstatedIsReplaced) {
   const vo::MotionInput used{0.5, 3};
-  EXPECT_FALSE(vo::AsShown(used, {1.9, 0.2}));
-  const auto shown = vo::AsShown(used, {1.9, 7});
+  EXPECT_FALSE(vo::Inflated(used, {1.9, 0.2}));
+  const auto shown = vo::Inflated(used, {1.9, 7});
   ASSERT_TRUE(shown);
   EXPECT_EQ(shown->position_noise, 0.5);
   EXPECT_EQ(shown->orientation_noise, 21);

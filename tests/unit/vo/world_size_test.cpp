@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "vo/filter/checked_filter.h"
 #include "vo/filter/ekf_slam.h"
 #include "vo/filter/particle_filter.h"
-#include "vo/filter/watched_filter.h"
 #include "vo/geometry/so3.h"
 
 namespace {
@@ -55,13 +55,13 @@ std::vector<vo::Belief> Fly(const vo::FilterParams& params, double size) {
     filter = std::make_unique<vo::EkfSlam>(motion, params, landmark, prior);
   else
     filter = std::make_unique<vo::ParticleFilter>(motion, params, landmark, prior, 4);
-  vo::WatchedFilter watched(std::move(filter));
+  vo::CheckedFilter checked(std::move(filter));
 
   std::vector<vo::FirstView> views;
   for (int n = 0; n < kLandmarks; ++n)
     views.push_back(
         {{0.5 * std::sin(1.3 * n), 0.4 * std::cos(2.1 * n)}, kSigma * kSigma * Eigen::Matrix2d::Identity()});
-  watched.AddLandmarks(views);
+  checked.AddLandmarks(views);
   std::vector<vo::Belief> beliefs;
   for (int frame = 1; frame <= kFrames; ++frame) {
     const vo::Pose pose{{0.01 * frame, 0.003 * frame, 0.002 * std::sin(0.2 * frame)},
@@ -78,9 +78,9 @@ std::vector<vo::Belief> Fly(const vo::FilterParams& params, double size) {
           {n, X.head<2>() / X.z() + kSigma * Eigen::Vector2d(std::sin(17.0 * n * frame), std::cos(23.0 * n * frame)),
            kSigma * kSigma * Eigen::Matrix2d::Identity()});
     }
-    watched.Predict(1.0 / 30);
-    watched.Update(matches);
-    vo::Belief belief = watched.belief();
+    checked.Predict(1.0 / 30);
+    checked.Update(matches);
+    vo::Belief belief = checked.belief();
     belief.pose.p_WC /= size;
     belief.velocity.head<3>() /= size;
     for (const int i : {0, 1, 2, 6, 7, 8}) {
@@ -123,16 +123,16 @@ TEST(WorldSize, DenormalVariancesAreVariances) {
       filter = std::make_unique<vo::EkfSlam>(vo::MotionParams{}, member.params, vo::LandmarkParams{}, prior);
     else
       filter = std::make_unique<vo::ParticleFilter>(vo::MotionParams{}, member.params, vo::LandmarkParams{}, prior, 4);
-    vo::WatchedFilter watched(std::move(filter));
+    vo::CheckedFilter checked(std::move(filter));
     const vo::FirstView view{{0.1, -0.2}, kSigma * kSigma * Eigen::Matrix2d::Identity()};
-    watched.AddLandmarks({&view, 1});
+    checked.AddLandmarks({&view, 1});
     for (int frame = 1; frame <= 20; ++frame) {
       const vo::Match match{0, view.ray, view.R};
-      watched.Predict(1.0 / 30);
-      watched.Update({&match, 1});
-      EXPECT_EQ(watched.answer().events.not_positive_definite + watched.answer().events.non_finite_weight, 0)
+      checked.Predict(1.0 / 30);
+      checked.Update({&match, 1});
+      EXPECT_EQ(checked.answer().events.not_positive_definite + checked.answer().events.non_finite_weight, 0)
           << member.name << ' ' << frame;
-      EXPECT_TRUE(watched.belief().pose.p_WC.allFinite() && watched.belief().covariance.allFinite())
+      EXPECT_TRUE(checked.belief().pose.p_WC.allFinite() && checked.belief().covariance.allFinite())
           << member.name << ' ' << frame;
     }
   }

@@ -47,14 +47,14 @@ std::string SystemSentence(const SystemSummary& s, const std::vector<SystemSumma
   return text;
 }
 
-std::string DuelSentence(const std::vector<RunMetrics>& runs, const SystemSummary& a, const SystemSummary& b) {
-  const Duel duel = Compare(runs, a.system, b.system);
-  if (duel.seeds == 0) return "";
+std::string PairwiseSentence(const std::vector<RunMetrics>& runs, const SystemSummary& a, const SystemSummary& b) {
+  const PairwiseComparison pair = Compare(runs, a.system, b.system);
+  if (pair.seeds == 0) return "";
   const std::string first = Escape(DisplayName(a.system)), second = Escape(DisplayName(b.system));
-  std::string text = first + " has the smaller ATE in <b>" + std::to_string(duel.wins) + " of " +
-                     Count(duel.seeds, "seed") + "</b> against " + second + "; medians " + Fixed(100 * a.ate_m, 2) +
+  std::string text = first + " has the smaller ATE in <b>" + std::to_string(pair.wins) + " of " +
+                     Count(pair.seeds, "seed") + "</b> against " + second + "; medians " + Fixed(100 * a.ate_m, 2) +
                      " and " + Fixed(100 * b.ate_m, 2) + " cm.";
-  if (a.ate_m >= b.ate_m || 2 * duel.wins <= duel.seeds)
+  if (a.ate_m >= b.ate_m || 2 * pair.wins <= pair.seeds)
     text += " <b>" + first + " does not beat " + second + " here.</b>";
   return text;
 }
@@ -124,8 +124,8 @@ std::string RunSummary(const ResultData& data, const std::vector<RunMetrics>& ju
   for (const std::string& verdict : d.verdicts) html += "<li><b>" + Escape(verdict) + "</b></li>";
   for (const SystemSummary& s : summaries) html += "<li>" + SystemSentence(s, baselines) + "</li>";
   for (std::size_t i = 1; i < summaries.size(); ++i) {
-    const std::string duel = DuelSentence(judged, summaries[0], summaries[i]);
-    if (!duel.empty()) html += "<li>" + duel + "</li>";
+    const std::string pair = PairwiseSentence(judged, summaries[0], summaries[i]);
+    if (!pair.empty()) html += "<li>" + pair + "</li>";
   }
   return html + "</ul>\n" + SystemTiles(summaries, baselines);
 }

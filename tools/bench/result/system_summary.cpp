@@ -88,17 +88,17 @@ std::vector<SystemSummary> SummariseBaselines(const std::vector<RunMetrics>& run
   return {MedianOf(still), MedianOf(steady)};
 }
 
-Duel Compare(const std::vector<RunMetrics>& runs, const std::string& first, const std::string& second) {
-  Duel duel;
+PairwiseComparison Compare(const std::vector<RunMetrics>& runs, const std::string& first, const std::string& second) {
+  PairwiseComparison pair;
   for (const RunMetrics& a : runs) {
     if (a.run.system != first) continue;
     for (const RunMetrics& b : runs) {
       if (b.run.system != second || b.run.seed != a.run.seed) continue;
-      ++duel.seeds;
-      duel.wins += a.metrics.errors.sim3.position.rmse < b.metrics.errors.sim3.position.rmse;
+      ++pair.seeds;
+      pair.wins += a.metrics.errors.sim3.position.rmse < b.metrics.errors.sim3.position.rmse;
     }
   }
-  return duel;
+  return pair;
 }
 
 std::string TextSummary(const std::vector<RunMetrics>& runs) {
@@ -118,10 +118,10 @@ std::string TextSummary(const std::vector<RunMetrics>& runs) {
   std::string text = AlignedTable(rows);
   const std::vector<SystemSummary> systems = SummariseSystems(runs);
   for (std::size_t i = 1; i < systems.size(); ++i) {
-    const Duel duel = Compare(runs, systems[0].system, systems[i].system);
-    if (duel.seeds == 0) continue;
-    text += DisplayName(systems[0].system) + " has the smaller ATE in " + std::to_string(duel.wins) + " of " +
-            std::to_string(duel.seeds) + " seeds against " + DisplayName(systems[i].system) + ".\n";
+    const PairwiseComparison pair = Compare(runs, systems[0].system, systems[i].system);
+    if (pair.seeds == 0) continue;
+    text += DisplayName(systems[0].system) + " has the smaller ATE in " + std::to_string(pair.wins) + " of " +
+            std::to_string(pair.seeds) + " seeds against " + DisplayName(systems[i].system) + ".\n";
   }
   text +=
       "Medians over runs. ATE: position RMSE after Sim(3) alignment; live: of the answers as they were given. "

@@ -36,10 +36,10 @@ std::vector<SystemSummary> SummariseBaselines(const std::vector<RunMetrics>& run
 SystemSummary Summarise(const RunMetrics& run);
 
 // Seeds that both systems ran, and in how many of them the first has the smaller ATE (Sim(3)).
-struct Duel {
+struct PairwiseComparison {
   std::size_t seeds = 0, wins = 0;
 };
-Duel Compare(const std::vector<RunMetrics>& runs, const std::string& first, const std::string& second);
+PairwiseComparison Compare(const std::vector<RunMetrics>& runs, const std::string& first, const std::string& second);
 
 // A table: systems and baselines, then an explanation of the columns. Ends with a line break. Empty for no runs.
 std::string TextSummary(const std::vector<RunMetrics>& runs);

@@ -21,7 +21,7 @@
 #include "tools/bench/tracking/match_errors.h"
 #include "tools/bench/tracking/tracker.h"
 #include "tools/judge/evaluation/text_file.h"
-#include "vo/filter/watched_filter.h"
+#include "vo/filter/checked_filter.h"
 #include "vo/geometry/camera_file.h"
 #include "vo/sequence/read_ahead.h"
 

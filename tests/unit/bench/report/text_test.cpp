@@ -98,9 +98,9 @@ TEST(Compare, CountsSeedsThatBothRan) {
   set(2, "a", 3, 0.1);
   set(3, "b", 2, 0.3);
   set(4, "b", 1, 0.2);
-  const Duel duel = Compare(runs, "a", "b");
-  EXPECT_EQ(duel.seeds, 2u);
-  EXPECT_EQ(duel.wins, 1u);
+  const PairwiseComparison pair = Compare(runs, "a", "b");
+  EXPECT_EQ(pair.seeds, 2u);
+  EXPECT_EQ(pair.wins, 1u);
 }
 
 }  // namespace

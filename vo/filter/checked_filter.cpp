@@ -1,4 +1,4 @@
-#include "vo/filter/watched_filter.h"
+#include "vo/filter/checked_filter.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -33,7 +33,7 @@ bool PositiveDefinite(const Eigen::Matrix2d& R) { return R.allFinite() && R(0, 0
 }  // namespace
 
 // Entries are finite and symmetric, and no variance is negative; `above_zero`: nor zero.
-void WatchedFilter::RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage,
+void CheckedFilter::RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const char* stage,
                                      const char* whose, bool above_zero) const {
   if (!covariance.allFinite())
     throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " is not a number");
@@ -45,7 +45,7 @@ void WatchedFilter::RequireVariances(const Eigen::Ref<const Eigen::MatrixXd>& co
     throw FilterFault(frame_, stage, std::string("the covariance of ") + whose + " is not symmetric");
 }
 
-void WatchedFilter::RequireAnswer(const char* stage) const {
+void CheckedFilter::RequireAnswer(const char* stage) const {
   const FilterAnswer& answer = filter_->answer();
   const Belief& belief = answer.belief;
   Require(Finite(belief.pose), stage, "the pose is not one");
@@ -66,26 +66,26 @@ void WatchedFilter::RequireAnswer(const char* stage) const {
           "the effective number of particles is not one");
 }
 
-void WatchedFilter::Predict(double dt, const MotionInput& input) {
+void CheckedFilter::Predict(double dt, const MotionInput& input) {
   ++frame_;
   Require(dt > 0 && std::isfinite(dt), "prediction", "the time since the last frame is not positive");
   filter_->Predict(dt, input);
   RequirePrediction();
 }
 
-void WatchedFilter::PredictAgain(const MotionInput& input) {
+void CheckedFilter::PredictAgain(const MotionInput& input) {
   filter_->PredictAgain(input);
   RequirePrediction();
 }
 
-void WatchedFilter::RequirePrediction() const {
+void CheckedFilter::RequirePrediction() const {
   const PoseGaussian prediction = filter_->Reference().prediction;
   Require(Finite(prediction.mean), "prediction", "the pose is not one");
   RequireVariances(prediction.covariance, "prediction", "the pose",
                    true);  // the motion is uncertain
 }
 
-const FilterAnswer& WatchedFilter::Update(std::span<const Match> matches) {
+const FilterAnswer& CheckedFilter::Update(std::span<const Match> matches) {
   const int count = landmark_count();
   for (const Match& match : matches) {
     Require(match.landmark >= 0 && match.landmark < count, "update", "a match is of a landmark that is not in the map");
@@ -97,7 +97,7 @@ const FilterAnswer& WatchedFilter::Update(std::span<const Match> matches) {
   return answer;
 }
 
-void WatchedFilter::AddLandmarks(std::span<const FirstView> views) {
+void CheckedFilter::AddLandmarks(std::span<const FirstView> views) {
   for (const FirstView& view : views) {
     Require(view.ray.allFinite() && view.d_ray_d_rho.allFinite(), "new landmarks",
             "a first view is at no point of the image");
@@ -112,7 +112,7 @@ void WatchedFilter::AddLandmarks(std::span<const FirstView> views) {
           "the map has another number of landmarks");
 }
 
-void WatchedFilter::KeepLandmarks(const std::vector<bool>& keep) {
+void CheckedFilter::KeepLandmarks(const std::vector<bool>& keep) {
   Require(static_cast<int>(keep.size()) == landmark_count(), "forgetting",
           "the number of landmarks given is not that of the map");
   filter_->KeepLandmarks(keep);
@@ -120,7 +120,7 @@ void WatchedFilter::KeepLandmarks(const std::vector<bool>& keep) {
           "the map has another number of landmarks");
 }
 
-std::vector<ImagePrediction> WatchedFilter::PredictImages(std::span<const int> landmarks) const {
+std::vector<ImagePrediction> CheckedFilter::PredictImages(std::span<const int> landmarks) const {
   std::vector<ImagePrediction> predictions = filter_->PredictImages(landmarks);
   for (const ImagePrediction& prediction : predictions) {
     if (!prediction.in_front) continue;
@@ -130,7 +130,7 @@ std::vector<ImagePrediction> WatchedFilter::PredictImages(std::span<const int> l
   return predictions;
 }
 
-std::vector<Filter::LandmarkBelief> WatchedFilter::LandmarkBeliefs() const {
+std::vector<Filter::LandmarkBelief> CheckedFilter::LandmarkBeliefs() const {
   std::vector<LandmarkBelief> beliefs = filter_->LandmarkBeliefs();
   for (const LandmarkBelief& belief : beliefs) {
     Require(belief.X_W.allFinite() && std::isfinite(belief.inverse_depth), "landmarks", "a landmark is nowhere");
@@ -139,7 +139,7 @@ std::vector<Filter::LandmarkBelief> WatchedFilter::LandmarkBeliefs() const {
   return beliefs;
 }
 
-std::vector<Filter::LandmarkSpread> WatchedFilter::LandmarkSpreads() const {
+std::vector<Filter::LandmarkSpread> CheckedFilter::LandmarkSpreads() const {
   std::vector<LandmarkSpread> spreads = filter_->LandmarkSpreads();
   for (const LandmarkSpread& spread : spreads) {
     RequireSigma(spread.inverse_depth_sigma);

@@ -1,6 +1,6 @@
 // Non-finite numbers and invalid covariances in every part of a filter's state, inputs and outputs: none passes for an
 // answer.
-#include "vo/filter/watched_filter.h"
+#include "vo/filter/checked_filter.h"
 
 #include <gmock/gmock.h>
 
@@ -58,21 +58,21 @@ struct Seen {
 Seen Play(std::unique_ptr<vo::Filter> filter, const std::function<void(int)>& before,
           const std::function<void(int)>& between = {}) {
   Seen seen;
-  vo::WatchedFilter watched(std::move(filter));
+  vo::CheckedFilter checked(std::move(filter));
   std::vector<int> all;
   for (int n = 0; n < kLandmarks; ++n) all.push_back(n);
   try {
-    watched.AddLandmarks(FirstViews());
+    checked.AddLandmarks(FirstViews());
     for (int frame = 1; frame <= kFrames; ++frame) {
       if (before) before(frame);
-      watched.Predict(1.0 / 30);
+      checked.Predict(1.0 / 30);
       if (between) between(frame);
-      watched.PredictImages(all);
-      watched.Update(Matches(frame));
-      watched.LandmarkBeliefs();
-      watched.LandmarkSpreads();
-      seen.events += watched.answer().events;
-      seen.beliefs.push_back(watched.belief());
+      checked.PredictImages(all);
+      checked.Update(Matches(frame));
+      checked.LandmarkBeliefs();
+      checked.LandmarkSpreads();
+      seen.events += checked.answer().events;
+      seen.beliefs.push_back(checked.belief());
     }
   } catch (const vo::FilterFault& fault) {
     seen.fault = fault;
@@ -161,11 +161,11 @@ std::vector<Member> Members() {
   return members;
 }
 
-class WatchedMember : public testing::TestWithParam<Member> {};
+class CheckedMember : public testing::TestWithParam<Member> {};
 
 // Non-finite value in one particle or all, between frames or after the prediction. A fault names this frame or one of
 // the next four, or a guard's count differs, or the value is unused and every answer is the same.
-TEST_P(WatchedMember, NonFiniteStateIsCaught) {
+TEST_P(CheckedMember, NonFiniteStateIsCaught) {
   const Seen healthy = Play(MakeParticles(GetParam().params), {});
   ASSERT_FALSE(healthy.fault) << healthy.fault->what();
   int faults = 0, guarded = 0;
@@ -205,11 +205,11 @@ TEST_P(WatchedMember, NonFiniteStateIsCaught) {
   EXPECT_GT(guarded, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Family, WatchedMember, testing::ValuesIn(Members()),
+INSTANTIATE_TEST_SUITE_P(Family, CheckedMember, testing::ValuesIn(Members()),
                          [](const auto& member) { return std::string(member.param.name); });
 
 // Impossible particle, one of eight: it is counted and replaced, and the others go on.
-TEST(WatchedFilter, AnImpossibleParticleIsReplacedAndCounted) {
+TEST(CheckedFilter, AnImpossibleParticleIsReplacedAndCounted) {
   std::unique_ptr<vo::ParticleFilter> filter = MakeParticles(Plain());
   vo::ParticleFilter& particles = *filter;
   const Seen seen = Play(std::move(filter), {}, [&](int frame) {
@@ -222,7 +222,7 @@ TEST(WatchedFilter, AnImpossibleParticleIsReplacedAndCounted) {
 }
 
 // All eight particles impossible at once: each is counted once, and the weights are finite from then on.
-TEST(WatchedFilter, WhereAllAreImpossibleTheWeightsBeginAgain) {
+TEST(CheckedFilter, WhereAllAreImpossibleTheWeightsBeginAgain) {
   for (const int window : {0, 3, 6}) {
     vo::FilterParams params = Plain();
     params.lag = window == 3 ? 3 : 0;
@@ -242,7 +242,7 @@ TEST(WatchedFilter, WhereAllAreImpossibleTheWeightsBeginAgain) {
 }
 
 // Invalid inputs of the filter.
-TEST(WatchedFilter, RefusesWhatIsNoMeasurement) {
+TEST(CheckedFilter, RefusesWhatIsNoMeasurement) {
   using Tell = std::function<void(vo::Filter&)>;
   const auto with_match = [](const std::function<void(vo::Match&)>& spoil) {
     return [spoil](vo::Filter& filter) {
@@ -281,16 +281,16 @@ TEST(WatchedFilter, RefusesWhatIsNoMeasurement) {
        "frame 0, forgetting: the number of landmarks given is not that of the map"},
   };
   for (const auto& told : cases) {
-    vo::WatchedFilter filter(MakeParticles(Plain()));
+    vo::CheckedFilter filter(MakeParticles(Plain()));
     filter.AddLandmarks(FirstViews());
     EXPECT_THAT([&] { told.first(filter); }, (testing::ThrowsMessage<vo::FilterFault>(testing::StrEq(told.second))));
   }
 }
 
 // Empty map: every member of the family coasts, and accepts new landmarks.
-TEST(WatchedFilter, GoesOnWithAnEmptyMap) {
+TEST(CheckedFilter, GoesOnWithAnEmptyMap) {
   for (const Member& member : Members()) {
-    vo::WatchedFilter filter(MakeParticles(member.params));
+    vo::CheckedFilter filter(MakeParticles(member.params));
     filter.AddLandmarks(FirstViews());
     for (int frame = 1; frame <= 20; ++frame) {
       if (frame == kPoisoned) filter.KeepLandmarks(std::vector<bool>(kLandmarks, false));
@@ -361,7 +361,7 @@ class Broken final : public vo::Filter {
 };
 
 // Invalid outputs of the filter, stage by stage.
-TEST(WatchedFilter, RefusesWhatIsNoAnswer) {
+TEST(CheckedFilter, RefusesWhatIsNoAnswer) {
   const std::pair<std::function<void(Broken&)>, const char*> cases[] = {
     {[](Broken& f) { f.spoil_prediction = [](auto& p) { p.mean.p_WC.x() = kNan; }; },
      "frame 1, prediction: the pose is not one"},

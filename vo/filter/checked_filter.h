@@ -25,9 +25,9 @@ class FilterFault : public std::runtime_error {
 };
 
 // All methods as Filter has them; each throws FilterFault.
-class WatchedFilter final : public Filter {
+class CheckedFilter final : public Filter {
  public:
-  explicit WatchedFilter(std::unique_ptr<Filter> filter) : filter_(std::move(filter)) {}
+  explicit CheckedFilter(std::unique_ptr<Filter> filter) : filter_(std::move(filter)) {}
   const Filter& watched() const { return *filter_; }
 
   void Predict(double dt, const MotionInput& input = {}) override;
