@@ -151,12 +151,12 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
   diagnostics.repeated = association.repeated;
   views_ = std::move(association.views);
   left_out_ = std::move(association.left_out);
-  if (params_.motion.adaptive && !filter_.answer().initialising) budget_ = NextBudget(association, params_.features);
+  if (adapts_map()) budget_ = NextBudget(association, params_.features);
   diagnostics.ms_filter += watch.Lap();
   last_stamp_ns_ = frame.frame.stamp_ns;
 
   const std::vector<Filter::LandmarkBelief> beliefs = filter_.LandmarkBeliefs();
-  if (params_.motion.adaptive && !filter_.answer().initialising) UpdateTypicalDepth(association.matches, beliefs);
+  if (adapts_map()) UpdateTypicalDepth(association.matches, beliefs);
   std::vector<NewFeature> features = DetectFeatures(frame);  // section 7
   if (params_.motion.adaptive && association.matches.empty()) {
     if (features.size() < kEnoughToBegin)
@@ -274,8 +274,7 @@ std::vector<NewFeature> Tracker::DetectFeatures(const PreparedFrame& frame) {
   for (const LeftOut& one : left_out_) occupied.push_back(one.pixel);
   for (const FeatureView& view : views_)
     if (view.status == FeatureView::Status::matched) occupied.push_back(view.pixel);
-  const bool more = params_.motion.adaptive && !filter_.answer().initialising;
-  return detector_.Detect(frame, std::move(occupied), more ? params_.features.enough_matches : 0);
+  return detector_.Detect(frame, std::move(occupied), adapts_map() ? params_.features.enough_matches : 0);
 }
 
 // Deletes landmarks, also to make room for `wanted` new ones; those searched for in this frame are kept.

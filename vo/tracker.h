@@ -52,6 +52,9 @@ class Tracker {
   void RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics);
   std::optional<PathCorrection> Relocalise(const PreparedFrame& frame, const Association& association,
                                            bool failed) const;
+  // Whether search budget, depth prior and density of new features follow the map: with `motion.adaptive`, after the
+  // start.
+  bool adapts_map() const { return params_.motion.adaptive && !filter_.answer().initialising; }
   void Update(std::span<const Match> matches);
   void LoseLandmarks();
   void UpdateTypicalDepth(std::span<const Match> matches, std::span<const Filter::LandmarkBelief> beliefs);

@@ -40,6 +40,11 @@ std::uint32_t Encode(float linear, bool roots) {
   return static_cast<std::uint32_t>(0.5 + static_cast<double>((roots ? std::sqrt(clipped) : clipped) * kTexelMax));
 }
 
+// A texel of linear red, green, blue.
+std::uint32_t Packed(const float* rgb, bool roots) {
+  return Encode(rgb[0], roots) | Encode(rgb[1], roots) << 10 | Encode(rgb[2], roots) << 20;
+}
+
 glm::vec3 Decode(std::uint32_t bits, bool roots) {
   const glm::vec3 code = glm::vec3(static_cast<float>(bits & 1023u), static_cast<float>((bits >> 10) & 1023u),
                                    static_cast<float>((bits >> 20) & 1023u)) *
@@ -91,8 +96,8 @@ std::shared_ptr<float[]> Shrunk(const Values& at, int width, int height, int to_
 }
 
 // First levels of a picture whose sides are multiples of kTile, tile by tile, so that their linear values stay in the
-// processor's cache; as Shrunk would give them. texels(level, x, y): the place of a texel. Returns the linear values of
-// level kTileLevels.
+// processor's cache; as Shrunk gives them. texels(level, x, y): the place of a texel. Returns the linear values of level
+// kTileLevels.
 constexpr int kTileLevels = 6, kTile = 1 << kTileLevels;
 
 template <class Texels>
@@ -117,13 +122,12 @@ std::shared_ptr<float[]> TiledLevels(std::span<const std::uint8_t> rgb, int widt
             for (int c = 0; c < 3; ++c)
               to[c] = 0.5f * (0.5f * from[c] + 0.5f * from[c + 3]) +
                       0.5f * (0.5f * from[row + c] + 0.5f * from[row + c + 3]);
-            if (texel != nullptr)
-              *texel++ = Encode(to[0], roots) | Encode(to[1], roots) << 10 | Encode(to[2], roots) << 20;
+            if (texel != nullptr) *texel++ = Packed(to, roots);
           }
         }
-        std::swap(fine, coarse);
+        std::swap(fine, coarse);  // an even number of times
       }
-      std::copy_n(fine.data(), 3, &out[3 * static_cast<std::size_t>(tile_y * columns + tile_x)]);  // swapped twice each
+      std::copy_n(fine.data(), 3, &out[3 * static_cast<std::size_t>(tile_y * columns + tile_x)]);
     }
   });
   return out;
@@ -153,28 +157,34 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
     texel_of_code[i] = Encode(linear_of_code[i], roots);
   }
   std::uint32_t* const texels = owner_.get();
-  const bool tiled = width % kTile == 0 && height % kTile == 0;
-  std::shared_ptr<float[]> linear;  // of the level; of the first one `rgb`
-  if (tiled) {
-    linear = TiledLevels(rgb, width, height, linear_of_code, roots,
-                         [&](int l, int x, int y) { return &texels[levels_[l].RowBegin(y) + x]; });
+  const auto place = [&](std::size_t l, int x, int y) { return &texels[levels_[l].RowBegin(y) + x]; };
+  tbb::parallel_for(0, height, [&](int y) {
+    const std::uint8_t* code = &rgb[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(width)];
+    for (std::uint32_t* texel = place(0, 0, y); texel != place(0, width, y); ++texel, code += 3)
+      *texel = texel_of_code[code[0]] | texel_of_code[code[1]] << 10 | texel_of_code[code[2]] << 20;
+  });
+  std::shared_ptr<float[]> linear;  // of the level
+  std::size_t l = 1;
+  if (width % kTile == 0 && height % kTile == 0) {
+    linear = TiledLevels(rgb, width, height, linear_of_code, roots, place);
+    l = kTileLevels;
+  } else if (levels_.size() > 1) {
+    linear = Shrunk([&](std::size_t i) { return linear_of_code[rgb[i]]; }, width, height, levels_[1].width,
+                    levels_[1].height);
   }
-  for (std::size_t l = 0; l < levels_.size(); ++l) {
+  for (; l < levels_.size(); ++l) {
     const TextureLevel& level = levels_[l];
-    const bool is_made = tiled && l > 0 && l < kTileLevels;
-    const auto value = [&](std::size_t i) { return l == 0 ? linear_of_code[rgb[i]] : linear[i]; };
-    const auto texel = [&](std::size_t i) { return l == 0 ? texel_of_code[rgb[i]] : Encode(linear[i], roots); };
     tbb::parallel_for(0, level.height, [&](int y) {
-      std::uint32_t* const row = &texels[level.RowBegin(y)];
-      std::size_t i = 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width);
-      for (int x = 0; x < level.width && !is_made; ++x, i += 3)
-        row[x] = texel(i) | texel(i + 1) << 10 | texel(i + 2) << 20;
-      row[level.width] = row[0];
+      const float* from = &linear[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width)];
+      for (std::uint32_t* texel = place(l, 0, y); texel != place(l, level.width, y); ++texel, from += 3)
+        *texel = Packed(from, roots);
     });
-    if (l + 1 == levels_.size()) break;
-    if (!tiled || l >= kTileLevels)
-      linear = Shrunk(value, level.width, level.height, levels_[l + 1].width, levels_[l + 1].height);
+    if (l + 1 < levels_.size())
+      linear = Shrunk([&](std::size_t i) { return linear[i]; }, level.width, level.height, levels_[l + 1].width,
+                      levels_[l + 1].height);
   }
+  for (std::size_t k = 0; k < levels_.size(); ++k)
+    for (int y = 0; y < levels_[k].height; ++y) *place(k, levels_[k].width, y) = *place(k, 0, y);
   std::ranges::copy(alpha, reinterpret_cast<std::uint8_t*>(texels + texels_.size()));
 }
 

@@ -51,17 +51,17 @@ void PathEquations::AddPrior(const PathPrior& prior, const WindowInput& in, cons
     for (int a = k == 0 ? 1 : 0; a < 2; ++a) {  // pose k - 1 (not for the sampled start), pose k
       const int i = k - 1 + a;
       const auto J_a = J_k.middleCols<6>(kPoseSize * a);
-      for (int l = 0; l < m; ++l) {
+      for (int l = 0; l < m && l <= i + 1; ++l) {  // the lower triangle
         const Matrix6 JW = J_a.transpose() * W.block<6, 6>(kPoseSize * k, kPoseSize * l);
         if (l > 0) A_.block<6, 6>(linear_.Row(i), linear_.Row(l - 1)).noalias() += JW * J.block<6, 6>(kPoseSize * l, 0);
-        A_.block<6, 6>(linear_.Row(i), linear_.Row(l)).noalias() += JW * J.block<6, 6>(kPoseSize * l, 6);
+        if (l <= i) A_.block<6, 6>(linear_.Row(i), linear_.Row(l)).noalias() += JW * J.block<6, 6>(kPoseSize * l, 6);
       }
     }
   }
   if (!linear_.with_rates()) return;
   A_.topLeftCorner<6, 6>().setIdentity();
   for (int k = 0; k <= m; ++k)
-    for (int l = 0; l <= m; ++l)
+    for (int l = 0; l <= k; ++l)
       A_.block<3, 3>(linear_.RateRow(k - 1), linear_.RateRow(l - 1)) = prior.rate_precision().block<3, 3>(3 * k, 3 * l);
 }
 
@@ -175,7 +175,6 @@ void PathEquations::AddMarginal(const Track& track, const PathLinearisation::Eli
     if (j < 0) continue;
     A_.block<3, 3>(j, j) += B;
     A_.block<3, 3>(i, j) -= B;
-    A_.block<3, 3>(j, i) -= B;
     C.middleRows<3>(j) -= c;
     gradient.segment<3>(j) -= g;
   }

@@ -36,9 +36,6 @@ LastVelocity VelocityAtTheEnd(const PathPrior& prior, const Pose& start, const V
 
 }  // namespace
 
-PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance)
-    : PathPrior(steps, velocity_covariance, steps) {}
-
 PathPrior::PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance,
                      const std::vector<MotionModel>& of_rates) {
   const int m = static_cast<int>(steps.size());

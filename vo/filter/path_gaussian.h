@@ -29,9 +29,8 @@ struct StepTurn {
 // do not depend on the path: all particles share them.
 class PathPrior {
  public:
-  // Steps in order of time; covariance of the velocity at the start of the first.
-  PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance);
-  // The same, with the noise of the rates of rows by other models of the steps; empty: without rates.
+  // Steps in order of time; covariance of the velocity at the start of the first. `of_rates`: models of the steps for
+  // the noise of the rates of rows; empty: without rates.
   PathPrior(const std::vector<MotionModel>& steps, const Matrix6& velocity_covariance,
             const std::vector<MotionModel>& of_rates);
 

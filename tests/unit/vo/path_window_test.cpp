@@ -44,7 +44,7 @@ struct Scene {
   std::vector<vo::Landmark> landmarks;
   std::vector<vo::Pose> anchors;
   std::vector<vo::Track> tracks;
-  vo::PathPrior prior() const { return {steps, velocity_covariance}; }
+  vo::PathPrior prior() const { return {steps, velocity_covariance, {}}; }
   vo::WindowInput input() const { return {start, velocity, landmarks, anchors}; }
 };
 

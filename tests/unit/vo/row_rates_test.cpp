@@ -46,7 +46,7 @@ double Nees(unsigned world, vo::Rates rates) {
   vo_test::Draws draws(world);
   const std::vector<vo::MotionModel> steps(
       kFrames, vo::NearlyConstantVelocity({.position_noise = 0.6, .orientation_noise = 2}, 1.0 / 30));
-  const vo::PathPrior prior(steps, 0.01 * Matrix6::Identity());
+  const vo::PathPrior prior(steps, 0.01 * Matrix6::Identity(), steps);
   const vo::Pose start{Vector3d(0.3, -0.1, 0.2), vo::Exp({0.1, -0.2, 0.05})};
   Vector6 velocity;
   velocity << 0.3, -0.1, 0.1, 0.1, 0.2, -0.1;

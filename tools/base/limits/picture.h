@@ -15,7 +15,7 @@ constexpr std::int64_t kMostPixels = 1 << 27;       // of any picture
 constexpr std::int64_t kPixelsOfAnyFile = 1 << 24;  // a small file may unpack to so many,
 constexpr std::int64_t kPixelsPerByte = 128;        // and to so many more for each of its bytes
 
-// Why a size is not acceptable for a file of so many bytes; empty: it is.
+// Problem of a picture's size in a file of `bytes` bytes; empty: none.
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes);
 
 // The same of a whole file. PNG, JPEG, BMP, TIFF, TGA, WebP, PNM and Radiance HDR are accepted; all other kinds are

@@ -36,7 +36,7 @@ class DiskBackedSeries {
   static_assert(std::is_trivially_copyable_v<Record>);
 
  public:
-  // Memory holds so many records; a series within that does not use the disk. Without a folder, all are in memory.
+  // Records kept in memory; a longer series uses the disk. Without a folder, all are in memory.
   explicit DiskBackedSeries(const std::optional<std::filesystem::path>& folder, std::size_t in_memory = 1024)
       : file_(folder.value_or("")), in_memory_(folder ? in_memory : std::numeric_limits<std::size_t>::max()) {}
 
