@@ -94,6 +94,7 @@ void Tracker::Begin(const PreparedFrame& frame, const Vector6& velocity) {
   since_update_ = {0, VelocityCovariance()};
   start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
   AddLandmarks(DetectFeatures(frame), frame, velocity);
+  if (params_.motion.adaptive) adaptive_.Keep(frame.grey);
 }
 
 // One iteration of Algorithm 1; sections of docs/algorithm.md.
