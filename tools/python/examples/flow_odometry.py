@@ -30,14 +30,15 @@ LEAST_ANGLE = np.radians(1.0)  # between the rays of a triangulation
 LEAST_INLIERS = 12
 REPROJECTION_PX = 3.0
 WINDOW = 6  # key frames that are adjusted
+WIDEST = 1.3  # of a fisheye's rays, from the axis [rad]: the program computes on the plane z = 1
 
 
 def read_camera(file):
-    """K and the distortion coefficients of OpenCV's order from the numbers that a file names."""
+    """K, the distortion coefficients in OpenCV's order, and whether they are those of a fisheye lens."""
     text = open(file).read()
     if "camera_matrix" in text:  # OpenCV's own
         K, lens = (np.array(data.split(","), float) for data in re.findall(r"data\s*:\s*\[([^]]*)", text)[:2])
-        return K.reshape(3, 3), lens
+        return K.reshape(3, 3), lens, False
 
     def number(key, default=None):
         match = re.search(rf"\b{key}\s*:\s*([-+0-9.eE]+)", text)
@@ -45,10 +46,10 @@ def read_camera(file):
             raise SystemExit(f"{file}: there is no {key}")
         return float(match[1]) if match else default
 
-    if re.search(r"model\s*:\s*[\"']?fisheye", text):
-        raise SystemExit(f"{file}: this program has no fisheye lens")
+    fisheye = bool(re.search(r"model\s*:\s*[\"']?fisheye", text))
     K = np.array([[number("fx"), 0, number("cx")], [0, number("fy"), number("cy")], [0, 0, 1]])
-    return K, np.array([number(k, 0.0) for k in ("k1", "k2", "p1", "p2", "k3")])
+    coefficients = ("k1", "k2", "k3", "k4") if fisheye else ("k1", "k2", "p1", "p2", "k3")
+    return K, np.array([number(k, 0.0) for k in coefficients]), fisheye
 
 
 class Track:
@@ -61,8 +62,8 @@ class Track:
 
 
 class Odometry:
-    def __init__(self, K, distortion):
-        self.K, self.distortion = K, distortion
+    def __init__(self, K, distortion, fisheye=False):
+        self.K, self.distortion, self.fisheye = K, distortion, fisheye
         self.pixel = 1 / K[0, 0]  # on the plane z = 1
         self.grey, self.tracks = None, []
         self.keyframes = []  # (R_CW, t_CW)
@@ -72,7 +73,12 @@ class Odometry:
         self.waiting = []  # rays of the frames of a start, by track, until its pose is known
 
     def undistort(self, pixels):
-        return cv2.undistortPoints(pixels.reshape(-1, 1, 2), self.K, self.distortion).reshape(-1, 2)
+        undistort = cv2.fisheye.undistortPoints if self.fisheye else cv2.undistortPoints
+        return undistort(pixels.reshape(-1, 1, 2), self.K, self.distortion).reshape(-1, 2)
+
+    def in_view(self, x, y):
+        """Whether pixels are not too far from the axis; by the equidistant projection."""
+        return (np.hypot(x - self.K[0, 2], y - self.K[1, 2]) < WIDEST * self.K[0, 0]) | (not self.fisheye)
 
     def flow(self, grey):
         """Follows all tracks into the image; those that do not come back to within a pixel end."""
@@ -83,14 +89,14 @@ class Odometry:
         after, found, _ = cv2.calcOpticalFlowPyrLK(self.grey, grey, before, None, **options)
         back, found_back, _ = cv2.calcOpticalFlowPyrLK(grey, self.grey, after, None, **options)
         height, width = grey.shape
-        inside = (after > 8).all(1) & (after[:, 0] < width - 8) & (after[:, 1] < height - 8)
+        inside = (after > 8).all(1) & (after[:, 0] < width - 8) & (after[:, 1] < height - 8) & self.in_view(*after.T)
         good = (found[:, 0] > 0) & (found_back[:, 0] > 0) & (np.linalg.norm(back - before, axis=1) < 1) & inside
         for track, pixel in zip(self.tracks, after):
             track.pixel = pixel
         self.tracks = [t for t, g in zip(self.tracks, good) if g]
 
     def detect(self, grey):
-        mask = np.full(grey.shape, 255, np.uint8)
+        mask = np.where(self.in_view(*np.indices(grey.shape)[::-1]), 255, 0).astype(np.uint8)
         for track in self.tracks:
             cv2.circle(mask, tuple(int(v) for v in track.pixel), LEAST_DISTANCE_PX, 0, -1)
         wanted = CORNERS - len(self.tracks)
