@@ -216,13 +216,13 @@ class GltfReader {
     return FromTrs({t[0], t[1], t[2]}, {q[3], q[0], q[1], q[2]}, {s[0], s[1], s[2]});
   }
 
-  // append(node, its transform), of all nodes.
+  // append(node, its transform), of all nodes; of an invisible one and its children cameras alone.
   void ReadNode(std::size_t index, const glm::dmat4& parent, int depth,
                 void (GltfReader::*append)(const json&, const glm::dmat4&)) {
     if (depth > kDeepestNode) throw std::runtime_error("has nodes more than 1000 deep, or in a circle");
     const json& node = file_.At("nodes", index);
     const json* visibility = GltfFile::Extension(node, "KHR_node_visibility");
-    if (visibility != nullptr && !visibility->value("visible", true)) return;  // with its children
+    if (append != &GltfReader::AppendCamera && visibility != nullptr && !visibility->value("visible", true)) return;
     const glm::dmat4 transform = parent * TransformOf(node);
     (this->*append)(node, transform);
     for (const json& child : GltfFile::Child(node, "children"))

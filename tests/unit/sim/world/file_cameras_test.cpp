@@ -18,13 +18,13 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
-// The triangle of a file that has five cameras: "door" lies below a node that is moved to (1, 2, 3), turned by 90
-// degrees about y (x to -z, z to x) and twice as large, 0.5 along its z: at (2, 2, 3) of the file, looking along -x.
+// The triangle of a file that has five cameras: "door" lies below an invisible node that is moved to (1, 2, 3), turned by
+// 90 degrees about y (x to -z, z to x) and twice as large, 0.5 along its z: at (2, 2, 3) of the file, looking along -x.
 // yfov: 2 atan(0.5) = 0.9272952180016122.
 constexpr const char* kFile = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 4, 5, 6]}],
   "nodes": [{"mesh": 0},
     {"translation": [1, 2, 3], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476], "scale": [2, 2, 2],
-     "children": [2, 3]},
+     "children": [2, 3], "extensions": {"KHR_node_visibility": {"visible": false}}},
     {"name": "door", "camera": 0, "translation": [0, 0, 0.5]},
     {"camera": 1, "matrix": [-1, 0, 0, 0,  0, 1, 0, 0,  0, 0, 1, 0,  0, 0, 0, 1]},
     {"name": "top", "camera": 2, "translation": [5, 5, 3]}, {"name": "twice", "camera": 0}, {"name": "twice", "camera": 0}],
