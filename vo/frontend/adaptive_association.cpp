@@ -8,9 +8,8 @@
 namespace vo {
 namespace {
 
-// Innovation ratio of a failed prediction, and the least agreement of the searched. False matches near a wrong
-// prediction may agree with it, at the start most of all.
-constexpr double kFailedRatio = 11, kFailedAgreement = 0.5, kFailedAgreementAtTheStart = 0.65;
+// Innovation ratio of a failed prediction, and the least agreement of the searched at the start.
+constexpr double kFailedRatio = 11, kFailedAgreementAtTheStart = 0.65;
 constexpr int kWidenings = 2;
 constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
 constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
@@ -24,11 +23,14 @@ InnovationRatios RatiosOf(const Association& association) {
   return RatiosOf(association.predicted, association.agreed);
 }
 
-bool Failed(const Association& association, bool initialising) {
+double AgreementOf(const Association& association) {
+  if (association.searched.empty()) return 1;
+  return static_cast<double>(association.matches.size()) / static_cast<double>(association.searched.size());
+}
+
+bool Failed(const Association& association, double least_agreement) {
   const InnovationRatios ratios = RatiosOf(association);
-  const double least = initialising ? kFailedAgreementAtTheStart : kFailedAgreement;
-  return std::max(ratios.position, ratios.orientation) > kFailedRatio ||
-         static_cast<double>(association.matches.size()) < least * static_cast<double>(association.searched.size());
+  return std::max(ratios.position, ratios.orientation) > kFailedRatio || AgreementOf(association) < least_agreement;
 }
 
 // At the start the whole map depends on the first matches: more of the searched have to agree.
@@ -82,6 +84,13 @@ bool HasSamePixels(const cv::Mat& a, const cv::Mat& b) {  // of one byte
 
 }  // namespace
 
+double UsualAgreement::Least(double agreement) {
+  constexpr double kFailed = 0.4, kDoubtful = 0.5, kClearlyBelow = 0.8, kGain = 0.1;
+  const double least = std::clamp(kClearlyBelow * usual_, kFailed, kDoubtful);
+  usual_ += kGain * (agreement - usual_);
+  return least;
+}
+
 MotionInput AdaptiveAssociation::Input(const Filter& filter, double coasting_s) const {
   MotionInput input = noise_.Input(filter.answer().belief.pose.q_WC);
   input.coasting_s = coasting_s;
@@ -105,7 +114,9 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
   const MotionInput first = Input(filter, coasting_s);
   filter.Predict(dt, first);
   Trial trial{filter, associate, first, associate(first)};
-  const auto failed = [&] { return Failed(trial.association, trial.initialising()); };
+  const double usual = usual_agreement_.Least(AgreementOf(trial.association));
+  const double least = trial.initialising() ? kFailedAgreementAtTheStart : usual;
+  const auto failed = [&] { return Failed(trial.association, least); };
   const auto clearly_more = [&](const Association& again) { return trial.HasClearlyMore(again); };
   const bool first_failed = failed();
   for (int k = 0; k < kWidenings && failed(); ++k)

@@ -13,6 +13,18 @@
 
 namespace vo {
 
+// Share of the searched landmarks that has to agree with a prediction: false matches near a wrong one may agree with it.
+// Two fifths; up to a half where the share is clearly below the usual one of the last ten frames or so. Landmarks that
+// come near and pass agree less in every frame.
+class UsualAgreement {
+ public:
+  // Of the next frame, whose first prediction has `agreement`.
+  double Least(double agreement);
+
+ private:
+  double usual_ = 1;
+};
+
 class AdaptiveAssociation {
  public:
   explicit AdaptiveAssociation(const Camera& camera) : camera_(camera) {}
@@ -43,6 +55,7 @@ class AdaptiveAssociation {
   AdaptiveNoise noise_;
   cv::Mat last_;  // grey image of the last pose
   int repetitions_ = 0;
+  UsualAgreement usual_agreement_;
 };
 
 }  // namespace vo
