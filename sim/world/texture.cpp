@@ -96,8 +96,8 @@ std::shared_ptr<float[]> Shrunk(const Values& at, int width, int height, int to_
 }
 
 // First levels of a picture whose sides are multiples of kTile, tile by tile, so that their linear values stay in the
-// processor's cache; as Shrunk gives them. texels(level, x, y): the place of a texel. Returns the linear values of level
-// kTileLevels.
+// processor's cache; as Shrunk gives them. texels(level, x, y): the place of a texel. Returns the linear values of
+// level kTileLevels.
 constexpr int kTileLevels = 6, kTile = 1 << kTileLevels;
 
 template <class Texels>

@@ -13,9 +13,9 @@
 
 namespace vo {
 
-// Share of the searched landmarks that has to agree with a prediction: false matches near a wrong one may agree with it.
-// Two fifths; up to a half where the share is clearly below the usual one of the last ten frames or so. Landmarks that
-// come near and pass agree less in every frame.
+// Share of the searched landmarks that has to agree with a prediction: false matches near a wrong one may agree with
+// it. Two fifths; up to a half where the share is clearly below the usual one of the last ten frames or so. Landmarks
+// that come near and pass agree less in every frame.
 class UsualAgreement {
  public:
   // Of the next frame, whose first prediction has `agreement`.

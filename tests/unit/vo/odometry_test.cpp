@@ -108,9 +108,9 @@ TEST(Odometry, TellsAFrameWhosePredictionFailed) {
   }
 }
 
-// Turn of 23 and 29 px a frame from the first image on, without a prior of the motion: direct alignment of the first two
-// images predicts the second. Not aligned, the first step is a translation, or the start begins anew in each frame: 74
-// and 767 mrad.
+// Turn of 23 and 29 px a frame from the first image on, without a prior of the motion: direct alignment of the first
+// two images predicts the second. Not aligned, the first step is a translation, or the start begins anew in each frame:
+// 74 and 767 mrad.
 TEST(Odometry, PredictsAQuickFirstTurnFromTheImages) {
   constexpr int kTextures = 12, kFrames = 8;
   for (const double turn : {0.09, 0.11}) {  // [rad] per frame

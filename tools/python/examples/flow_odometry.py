@@ -77,8 +77,9 @@ class Odometry:
         return undistort(pixels.reshape(-1, 1, 2), self.K, self.distortion).reshape(-1, 2)
 
     def in_view(self, x, y):
-        """Whether pixels are not too far from the axis; by the equidistant projection."""
-        return (np.hypot(x - self.K[0, 2], y - self.K[1, 2]) < WIDEST * self.K[0, 0]) | (not self.fisheye)
+        """Whether pixels are near enough to the axis, by the equidistant projection."""
+        radius = WIDEST * self.K[0, 0] if self.fisheye else np.inf
+        return np.hypot(x - self.K[0, 2], y - self.K[1, 2]) < radius
 
     def flow(self, grey):
         """Follows all tracks into the image; those that do not come back to within a pixel end."""
@@ -96,7 +97,8 @@ class Odometry:
         self.tracks = [t for t, g in zip(self.tracks, good) if g]
 
     def detect(self, grey):
-        mask = np.where(self.in_view(*np.indices(grey.shape)[::-1]), 255, 0).astype(np.uint8)
+        y, x = np.ogrid[:grey.shape[0], :grey.shape[1]]
+        mask = np.where(self.in_view(x, y), np.uint8(255), np.uint8(0))
         for track in self.tracks:
             cv2.circle(mask, tuple(int(v) for v in track.pixel), LEAST_DISTANCE_PX, 0, -1)
         wanted = CORNERS - len(self.tracks)

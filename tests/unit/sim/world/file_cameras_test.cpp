@@ -18,8 +18,9 @@ using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
-// The triangle of a file that has five cameras: "door" lies below an invisible node that is moved to (1, 2, 3), turned by
-// 90 degrees about y (x to -z, z to x) and twice as large, 0.5 along its z: at (2, 2, 3) of the file, looking along -x.
+// The triangle of a file that has five cameras: "door" lies below an invisible node that is moved to (1, 2, 3), turned
+// by 90 degrees about y (x to -z, z to x) and twice as large, 0.5 along its z: at (2, 2, 3) of the file, looking along
+// -x.
 // yfov: 2 atan(0.5) = 0.9272952180016122.
 constexpr const char* kFile = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 4, 5, 6]}],
   "nodes": [{"mesh": 0},
