@@ -81,12 +81,15 @@ class WindowFitting::Bundle {
     prior_mean_ = state_.shared;
     prior_ = {estimate_readout ? std::pow(kPriorReadout, -2) : std::pow(kFixed, -2), std::pow(kPriorFocal, -2)};
     std::map<int, Point> points;
+    const double extent = Extent(frames);
     for (std::size_t k = 0; k < frames.size(); ++k) {
-      state_.poses.push_back(frames[k].pose);
+      Pose pose = frames[k].pose;
+      pose.p_WC /= extent;
+      state_.poses.push_back(pose);
       for (const Sighting& sighting : frames[k].sightings) {
         const auto [at, fresh] = points.try_emplace(sighting.landmark);
         Point& point = at->second;
-        if (fresh) point = {frames[k].pose, Eigen::Vector3d::Zero(), {}};
+        if (fresh) point = {pose, Eigen::Vector3d::Zero(), {}};
         if (fresh) point.theta.head<2>() = camera.Undistort(sighting.pixel);
         point.views.push_back({static_cast<int>(k), sighting.pixel,
                                (sighting.R + kFloorPx * kFloorPx * Matrix2::Identity()).inverse(),
@@ -175,6 +178,14 @@ class WindowFitting::Bundle {
     for (const TrackedFrame& frame : frames)
       times.push_back(static_cast<double>(frame.stamp_ns - frames.front().stamp_ns) * 1e-9);
     return times;
+  }
+
+  // Unit of length: the greatest distance from the first pose. Neither unknown has lengths.
+  static double Extent(std::span<const TrackedFrame> frames) {
+    double extent = 0;
+    for (const TrackedFrame& frame : frames)
+      extent = std::max(extent, (frame.pose.p_WC - frames.front().pose.p_WC).norm());
+    return extent > 0 ? extent : 1;
   }
 
   int size() const { return 6 * static_cast<int>(state_.poses.size()) + 2; }

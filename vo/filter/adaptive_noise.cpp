@@ -71,7 +71,8 @@ void AdaptiveNoise::Learn(const PoseGaussian& predicted, const PoseGaussian& upd
   const Matrix6 P = R * predicted.covariance * R.transpose();
   const Matrix6 gained = R * (predicted.covariance - updated.covariance) * R.transpose();
   const Vector6 d = R * Minus(updated.mean, predicted.mean);
-  const Matrix6 T = Matrix6(S.llt().matrixL()) * Matrix6(P.llt().matrixL()).inverse();  // T P T' = S
+  const Matrix6 L_S = S.llt().matrixL();
+  const Matrix6 T = P.llt().matrixL().solve<Eigen::OnTheRight>(L_S);  // L_S L_P^-1: T P T' = S
   Matrix6 shown = S + T * (d * d.transpose() - gained) * T.transpose();
   if (failed) shown = Isotropic(shown);  // a single burst determines a size, but only one direction
   const double position = std::min(1.0, kMostOfOne * MeanOfBlock(density_, 0) / MeanOfBlock(shown, 0));

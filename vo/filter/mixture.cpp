@@ -31,7 +31,7 @@ Belief Moments(const std::vector<BeliefComponent>& mixture) {
     for (const BeliefComponent& component : mixture)
       mean_offset += component.weight * Minus(component.pose, belief.pose);
     belief.pose = Plus(belief.pose, mean_offset);
-    if (mean_offset.squaredNorm() < 1e-24) break;
+    if (mean_offset.tail<3>().squaredNorm() < 1e-24) break;  // that of the positions is exact at once
   }
   for (const BeliefComponent& component : mixture) belief.velocity += component.weight * component.velocity;
 

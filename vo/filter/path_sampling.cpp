@@ -11,7 +11,9 @@ ParticleColumns ExactDraws(const ParticleColumns& offsets, const ParticleColumns
   ParticleColumns draws = normals.colwise() - normals.rowwise().mean();
   if (n >= normals.rows() + offsets.rows() + 2) {
     // Linearly dependent rows of the offsets (particles that are all at one place) are left out by the rank.
-    const Eigen::MatrixXd centred = (offsets.colwise() - offsets.rowwise().mean()).transpose();
+    Eigen::MatrixXd centred = (offsets.colwise() - offsets.rowwise().mean()).transpose();
+    const Eigen::RowVectorXd lengths = centred.colwise().norm();
+    centred.array().rowwise() /= (lengths.array() > 0).select(lengths.array(), 1);  // no unit decides the rank
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(centred);
     const Eigen::MatrixXd basis = (qr.householderQ() * Eigen::MatrixXd::Identity(n, qr.rank())).eval();
     draws -= (draws * basis) * basis.transpose();

@@ -22,10 +22,10 @@ VelocityFilter::VelocityFilter(const MotionModel& step)
   const Matrix6 Q12 = step.Q.topRightCorner<6, 6>(), Q22 = step.Q.bottomRightCorner<6, 6>();
   const Matrix6 F22_inverse = Phi_.inverse();
   Gamma_ = Q22.llt().matrixL();
-  H_ = F12_ * F22_inverse;                                              // (22)
-  Lambda_ = Q12 * Matrix6(Gamma_.inverse()).transpose() - H_ * Gamma_;  // (22)
-  Psi_Psi_ = Q11_ - Q12 * Q22.llt().solve(Q12.transpose());             // (19), as its square
-  m_previous_ = H_ * F21_ - F11_;                                       // (26)
+  H_ = F12_ * F22_inverse;                                                                           // (22)
+  Lambda_ = Gamma_.triangularView<Eigen::Lower>().solve(Q12.transpose()).transpose() - H_ * Gamma_;  // (22)
+  Psi_Psi_ = Q11_ - Q12 * Q22.llt().solve(Q12.transpose());  // (19), as its square
+  m_previous_ = H_ * F21_ - F11_;                            // (26)
   has_decayed_ = Phi_.diagonal().minCoeff() < kLeastFactor;
   Q12_ = Q12;
 }

@@ -32,6 +32,13 @@ TEST(ExactDraws, AreIndependentFromFourteenParticlesOn) {
   }
 }
 
+TEST(ExactDraws, HaveNoUnitOfLength) {
+  vo::ParticleColumns offsets = Normals(20, 4, vo::Stream::velocity);
+  const vo::ParticleColumns draws = vo::ExactDraws(offsets, Normals(20, 4));
+  offsets.topRows<3>() *= 1024;
+  EXPECT_EQ(vo::ExactDraws(offsets, Normals(20, 4)), draws);
+}
+
 // Offsets without scatter: in all directions, as at the start, or in all but two.
 TEST(ExactDraws, TakeOffsetsWithoutScatter) {
   vo::ParticleColumns offsets = vo::ParticleColumns::Constant(6, 20, 0.3);

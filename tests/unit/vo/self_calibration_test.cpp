@@ -154,6 +154,18 @@ TEST(WindowFit, KeepsAReadoutThatIsStated) {
   EXPECT_EQ(fit->readout_s.sigma, 0);
 }
 
+// A power of two rounds no product, so that any constant with a length shows.
+TEST(WindowFit, HasNoUnitOfLength) {
+  Draws draws(5);
+  auto frames = Film(draws, 0.013, 30, kMatches);
+  const auto fit = vo::WindowFitting(frames, kCamera, 0, true).AllRounds();
+  for (vo::TrackedFrame& frame : frames) frame.pose.p_WC *= 1024;
+  const auto other = vo::WindowFitting(frames, kCamera, 0, true).AllRounds();
+  ASSERT_TRUE(fit && other);
+  EXPECT_EQ(other->readout_s.value, fit->readout_s.value);
+  EXPECT_EQ(other->log_focal.value, fit->log_focal.value);
+}
+
 TEST(WindowFit, NeedsLandmarksAndFrames) {
   Draws draws(4);
   auto frames = Film(draws, 0, 30, kMatches);
