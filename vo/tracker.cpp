@@ -192,8 +192,10 @@ void Tracker::RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& d
   const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
   for (int round = 1; round < kRounds && diagnostics.matched >= FrameDiagnostics::kTrackedMatches; ++round) {
     const Vector6 velocity = MinusNear(filter_.belief().pose, prior_.pose, dt * prior_.w_WC_C) / dt;
+    const std::optional<MotionInput> input = adaptive_.repeated_input();
     *this = Restarted();
     Begin(first, velocity);
+    adaptive_.BeginWith(input);
     Follow(second, diagnostics);
   }
 }

@@ -111,14 +111,15 @@ bool AdaptiveAssociation::IsRepeated(const cv::Mat& grey) {
 Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
                                                      const std::function<Association(const MotionInput&)>& associate,
                                                      const Relocalise& relocalise) {
-  const MotionInput first = Input(filter, coasting_s);
+  const std::optional<MotionInput> known = std::exchange(begin_with_, std::nullopt);
+  const MotionInput first = known.value_or(Input(filter, coasting_s));
   filter.Predict(dt, first);
   Trial trial{filter, associate, first, associate(first)};
   const double usual = usual_agreement_.Least(AgreementOf(trial.association));
   const double least = trial.initialising() ? kFailedAgreementAtTheStart : usual;
   const auto failed = [&] { return Failed(trial.association, least); };
   const auto clearly_more = [&](const Association& again) { return trial.HasClearlyMore(again); };
-  const bool first_failed = failed();
+  const bool first_failed = known || failed();
   for (int k = 0; k < kWidenings && failed(); ++k)
     if (!trial.Repeat(Widened(trial.input, RatiosOf(trial.association)), clearly_more)) break;
   if (failed() && !last_.empty()) {
@@ -140,7 +141,8 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     moved.correction = recognised;
     trial.Repeat(moved, ShowsThePlace);
   }
-  trial.association.repeated = trial.repeated;
+  repeated_input_ = known || trial.repeated > 0 ? std::optional(trial.input) : std::nullopt;
+  trial.association.repeated = trial.repeated + (known ? 1 : 0);
   if (!trial.HasMatches()) {
     trial.association.RejectAll();
     return std::move(trial.association);

@@ -38,6 +38,11 @@ class AdaptiveAssociation {
                                   const std::function<Association(const MotionInput&)>& associate,
                                   const Relocalise& relocalise);
 
+  // Input of the last association, if its first prediction had failed and another was kept.
+  const std::optional<MotionInput>& repeated_input() const { return repeated_input_; }
+  // The next association, of the same frame, begins with this input.
+  void BeginWith(const std::optional<MotionInput>& input) { begin_with_ = input; }
+
   // Prediction of a frame that is not associated.
   void Predict(Filter& filter, double dt, double coasting_s) const;
 
@@ -56,6 +61,7 @@ class AdaptiveAssociation {
   cv::Mat last_;  // grey image of the last pose
   int repetitions_ = 0;
   UsualAgreement usual_agreement_;
+  std::optional<MotionInput> repeated_input_, begin_with_;
 };
 
 }  // namespace vo

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -20,27 +18,25 @@
 namespace vo {
 namespace {
 
-void RequireLens(settings::Section& section, const std::string& key, const std::string& name, Camera& camera) {
-  std::vector<double> coefficients;
-  if (!section.Require(key, coefficients) || coefficients.empty()) return;
-  const std::string problem = SetLens(coefficients, camera);
-  if (!problem.empty()) section.Reject(key, "'" + name + "' " + problem);
-}
-
 // sensor.yaml of EuRoC, and a camera of Kalibr's camchain.yaml, which differ in the key of the coefficients.
-void ReadEuroc(settings::Section section, const std::string& coefficients, Camera& camera) {
-  enum class Model { pinhole } model = Model::pinhole;
+void ReadEuroc(settings::Section section, const std::string& lens_key, Camera& camera) {
+  section.IgnoreRest();
+  const std::string remedy =
+      " is not known here: calibrate a pinhole with a radtan or equidistant lens (Kalibr: pinhole-radtan, "
+      "pinhole-equi)";
+  std::string model, distortion;
+  if (section.Require("camera_model", model) && model != "pinhole")
+    return section.Reject("camera_model", "the camera model '" + model + "'" + remedy);
+  const bool has_distortion = section.Require("distortion_model", distortion);
+  const bool none = distortion == "none";
+  if (distortion == "equidistant") {
+    camera.lens = Lens::fisheye;
+  } else if (has_distortion && !none && distortion != "radtan" && distortion != "radial-tangential" &&
+             distortion != "plumb_bob") {
+    return section.Reject("distortion_model", "the distortion model '" + distortion + "'" + remedy);
+  }
   std::array<double, 2> size{};
   std::array<double, 4> intrinsics{};
-  section.RequireChoice("camera_model", model, {{"pinhole", Model::pinhole}});
-  enum class Distortion { radtan, none, equidistant } distortion = Distortion::radtan;
-  section.RequireChoice("distortion_model", distortion,
-                        {{"radtan", Distortion::radtan},
-                         {"radial-tangential", Distortion::radtan},
-                         {"plumb_bob", Distortion::radtan},
-                         {"none", Distortion::none},
-                         {"equidistant", Distortion::equidistant}});
-  if (distortion == Distortion::equidistant) camera.lens = Lens::fisheye;
   constexpr settings::Range kPixels{1, std::numeric_limits<int>::max()};
   if (section.Require("resolution", size, settings::Unit::none, kPixels)) {
     camera.width = static_cast<int>(size[0]);
@@ -55,8 +51,13 @@ void ReadEuroc(settings::Section section, const std::string& coefficients, Camer
     camera.cy = intrinsics[3];
     if (!(camera.fx > 0 && camera.fy > 0)) section.Reject("intrinsics", "'intrinsics': fu and fv must be positive");
   }
-  if (distortion != Distortion::none) RequireLens(section, coefficients, coefficients, camera);
-  section.IgnoreRest();
+  std::vector<double> coefficients;
+  if (!(none ? section.Read(lens_key, coefficients) : section.Require(lens_key, coefficients))) return;
+  if (none && std::ranges::any_of(coefficients, [](double k) { return k != 0; }))
+    return section.Reject(lens_key, "'" + lens_key + "' must be 0 where 'distortion_model' is none");
+  if (none || (coefficients.empty() && camera.lens != Lens::fisheye)) return;
+  if (const std::string problem = SetLens(coefficients, camera); !problem.empty())
+    section.Reject(lens_key, "'" + lens_key + "' " + problem);
 }
 
 void ReadOwn(settings::Section root, Camera& camera) {
@@ -83,100 +84,6 @@ void ReadOwn(settings::Section root, Camera& camera) {
   }
 }
 
-// Entries row by row; empty after a problem, which the section keeps.
-std::vector<double> OpenCvMatrix(settings::Section section, const std::string& name) {
-  int rows = 0, columns = 0;
-  std::vector<double> values;
-  if (!section.Has("rows") && !section.Has("data")) {
-    section.Reject("data", "'" + name + "' must be a matrix: rows, cols and data");
-    return {};
-  }
-  const bool has_rows = section.Require("rows", rows, settings::Range::Positive());
-  const bool has_columns = section.Require("cols", columns, settings::Range::Positive());
-  const bool has_data = section.Require("data", values);
-  section.IgnoreRest();
-  if (!has_rows || !has_columns || !has_data) return {};
-  const std::int64_t count = static_cast<std::int64_t>(rows) * columns;
-  if (count == static_cast<std::int64_t>(values.size())) return values;
-  section.Reject("data", "'" + name + ".data': expected " + std::to_string(count) + " numbers, " +
-                             std::to_string(rows) + " x " + std::to_string(columns) + ", not " +
-                             std::to_string(values.size()));
-  return {};
-}
-
-// Without cv::FileStorage, which crashes, or does not terminate, on slightly malformed files (OpenCV 4.6).
-void ReadOpenCv(settings::Section root, Camera& camera) {
-  // The key that is present, of the two spellings of OpenCV's programs.
-  const auto either = [&](const char* name, const char* other) {
-    return std::string(root.Has(name) || !root.Has(other) ? name : other);
-  };
-  RequireSize(root, either("image_width", "image_Width"), either("image_height", "image_Height"), camera);
-  int fisheye = 0;
-  if (root.Read("fisheye_model", fisheye) && fisheye != 0) camera.lens = Lens::fisheye;
-  const std::string matrix_key = either("camera_matrix", "Camera_Matrix");
-  if (const std::vector<double> matrix = OpenCvMatrix(root.Child(matrix_key), matrix_key); !matrix.empty()) {
-    for (const std::string& problem : SetMatrix(matrix, camera)) root.Reject(matrix_key, problem);
-  }
-  const std::string lens_key = either("distortion_coefficients", "Distortion_Coefficients");
-  if (const std::vector<double> coefficients = OpenCvMatrix(root.Child(lens_key), lens_key); !coefficients.empty()) {
-    if (const std::string problem = SetLens(coefficients, camera); !problem.empty())
-      root.Reject(lens_key, "'distortion_coefficients' " + problem);
-  }
-  root.IgnoreRest();
-}
-
-// The characters of names and numbers.
-std::string Plain(std::string_view text) {
-  std::string plain(text);
-  std::erase_if(plain,
-                [](unsigned char c) { return std::isalnum(c) == 0 && c != '_' && c != '.' && c != '+' && c != '-'; });
-  return plain;
-}
-
-// OpenCV's XML (cv::FileStorage) as YAML, line for line: elements of words, and those in them, as matrices have.
-// Without OpenCV's own reader (4.6), which ends the program on slightly malformed files.
-std::string YamlOfXml(std::string_view xml, const std::filesystem::path& file) {
-  const auto fail = [&](const char* what) { throw settings::Error({{file.string(), 0, 0, what}}); };
-  if (xml.find("<opencv_storage") == std::string_view::npos)
-    fail("is XML, but not of cv::FileStorage: docs/conventions.md, \"Camera files\", has a list");
-  std::string yaml = "{";
-  int depth = 0;         // 1: in <opencv_storage>
-  bool is_open = false;  // an element with others in it, at depth 2
-  for (std::size_t at = xml.find('<'), next = 0; at < xml.size(); at = next) {
-    const std::size_t end = xml.find(xml.substr(at).starts_with("<!--") ? "-->" : ">", at);
-    if (end == std::string_view::npos) fail("is cut off in an element");
-    next = std::min(xml.find('<', end), xml.size());
-    const std::string_view tag = xml.substr(at + 1, end - at - 1), text = xml.substr(end + 1, next - end - 1);
-    const bool begins = std::string_view("/?!").find(tag.substr(0, 1)) == std::string_view::npos && !tag.ends_with('/');
-    if (begins && (++depth == 2 || (depth == 3 && is_open))) {
-      std::string words;
-      for (const base::Word& word : base::SplitWords(text)) words += (words.empty() ? "" : ", ") + Plain(word.text);
-      const std::string name = Plain(tag.substr(0, tag.find_first_of(" \t\r\n")));
-      if (depth == 2) is_open = words.empty();
-      yaml += name + ": " + (depth == 2 && is_open ? "{" : name == "data" ? "[" + words + "]," : words + ",");
-    } else if (tag.starts_with('/') && --depth == 1 && std::exchange(is_open, false)) {
-      yaml += "},";
-    }
-    yaml.append(static_cast<std::size_t>(std::ranges::count(xml.substr(at, next - at), '\n')), '\n');
-  }
-  if (depth != 0) fail("is cut off: its elements do not all end");
-  return yaml + "}";
-}
-
-// A blank behind the colon of a key, which cv::FileStorage does not need.
-std::string WithBlanks(std::string_view yaml) {
-  std::string out;
-  bool is_key = true;
-  for (std::size_t i = 0; i < yaml.size(); ++i) {
-    const char c = yaml[i];
-    out += c;
-    if (is_key && c == ':' && i + 1 < yaml.size() && std::isspace(static_cast<unsigned char>(yaml[i + 1])) == 0)
-      out += ' ';
-    is_key = c == '\n' || (is_key && (c == ' ' || Plain({&c, 1}) != ""));
-  }
-  return out;
-}
-
 // First data of the first line that is not a comment.
 std::string_view FirstData(std::string_view text) {
   while (text.starts_with('#') || text.starts_with('\n') || text.starts_with('\r')) {
@@ -188,6 +95,72 @@ std::string_view FirstData(std::string_view text) {
 
 bool HasLine(std::string_view text, std::string_view begin) {
   return text.starts_with(begin) || text.find("\n" + std::string(begin)) != std::string_view::npos;
+}
+
+Camera CameraOfText(std::string_view text, const std::filesystem::path& file) {
+  const auto refuse = [&] {
+    throw settings::Error(
+        {{file.string(), 0, 0,
+          "is no calibration of a kind that is known here: docs/conventions.md, \"Camera files\", has "
+          "a list"}});
+  };
+  if (std::optional<Camera> camera = ReadTextCamera(text, file)) return *camera;
+  const std::string_view data = FirstData(text);
+  const bool is_xml = data.starts_with('<'), is_ours = !is_xml && HasLine(text, "fx:");
+  const bool is_json = data.starts_with('{') && data.substr(1, data.find_first_not_of(" \t\r\n", 1)).ends_with('"');
+  const std::string extension = file.extension().string();
+  std::optional<settings::Document> read;
+  try {
+    // Our dialect has no tags and a single document.
+    read = settings::Document::FromText(is_xml    ? YamlOfXml(text, file)
+                                        : is_ours ? std::string(text)
+                                                  : PlainYaml(text),
+                                        file.string(), is_ours ? settings::Dialect::ours : settings::Dialect::opencv);
+  } catch (const settings::Error&) {
+    if (std::ranges::count(std::array{".txt", ".cfg", ".ini", ".m", ".csv"}, extension) > 0) refuse();
+    throw;
+  }
+  settings::Document& document = *read;
+  Camera camera;
+  camera.readout_s = std::nullopt;
+  settings::Section root = document.root();
+  const auto count = [&](const std::vector<std::string>& keys) {
+    return std::ranges::count_if(keys, [&](const std::string& key) { return root.Has(key); });
+  };
+  if (root.Has("cam0")) {
+    ReadEuroc(root.Child("cam0"), "distortion_coeffs", camera);
+    root.IgnoreRest();  // other cameras
+  } else if (ReadSlamCamera(root, camera)) {
+    // has read it
+  } else if (root.Has("intrinsics") && count({"camera_model", "distortion_model", "resolution"}) > 0) {
+    ReadEuroc(root, "distortion_coefficients", camera);
+  } else if (count(kMatrixKeys) + count({"image_width"}) > 0) {
+    ReadOpenCv(root, camera);
+  } else if (count({"width", "height", "fx", "fy", "cx", "cy"}) > (is_json ? 5 : 1)) {  // JSON may be any program's
+    ReadOwn(root, camera);
+  } else {
+    root.IgnoreRest();
+    document.ThrowIfBad();
+    refuse();
+  }
+  document.ThrowIfBad();
+  return camera;
+}
+
+// Returns what no camera has, as of numbers in other units than pixels; empty: nothing.
+std::string ImplausiblePart(const Camera& camera) {
+  const auto text = [](double value) { return base::Significant(value, 6) + " px"; };
+  for (const double f : {camera.fx, camera.fy}) {
+    if (!(f >= 0.1 * camera.width && f <= 100.0 * camera.width))
+      return "a focal length of " + text(f) + " does not fit images " + std::to_string(camera.width) +
+             " px wide: expected " + text(0.1 * camera.width) + " to " + text(100.0 * camera.width);
+  }
+  for (const auto& [c, size] : {std::pair(camera.cx, camera.width), std::pair(camera.cy, camera.height)}) {
+    if (!(c >= -size && c <= 2.0 * size))
+      return "a principal point at " + text(c) + " does not fit images of " + std::to_string(size) + " px: expected " +
+             text(-size) + " to " + text(2.0 * size);
+  }
+  return "";
 }
 
 }  // namespace
@@ -211,60 +184,27 @@ std::string SetLens(std::span<const double> coefficients, Camera& camera) {
 }
 
 Camera ReadCamera(const std::filesystem::path& file) {
+  const auto refuse = [&](const std::string& what) { throw settings::Error({{file.string(), 0, 0, what}}); };
+  std::error_code ignored;  // a name that is no valid path is not a file
+  if (std::filesystem::is_directory(file, ignored)) refuse("is a folder: give the calibration file in it");
   const std::optional<std::string> content = base::ReadFile(file);
   if (!content) settings::Document::FromFile(file);  // throws with the reason
-  const std::string_view text = base::WithoutMark(*content);
-  const auto refuse = [&](const std::string& what) { throw settings::Error({{file.string(), 0, 0, what}}); };
-  const std::string unknown =
-      "is no calibration of a kind that is known here: docs/conventions.md, \"Camera files\", has a list";
   if (const std::string problem = base::TextProblem(content->substr(0, 1024)); !problem.empty()) refuse(problem);
-  if (std::optional<Camera> camera = ReadTextCamera(FirstData(text), file)) return *camera;
-  const bool is_xml = FirstData(text).starts_with('<'), is_ours = !is_xml && HasLine(text, "fx:");
-  const std::string extension = file.extension().string();
-  std::optional<settings::Document> read;
-  try {
-    // Our dialect has no tags and a single document.
-    read = settings::Document::FromText(is_xml    ? YamlOfXml(text, file)
-                                        : is_ours ? std::string(text)
-                                                  : WithBlanks(text),
-                                        file.string(), is_ours ? settings::Dialect::ours : settings::Dialect::opencv);
-  } catch (const settings::Error&) {
-    if (extension == ".txt" || extension == ".cfg" || extension == ".m" || extension == ".csv") refuse(unknown);
-    throw;
-  }
-  settings::Document& document = *read;
-  Camera camera;
-  camera.readout_s = std::nullopt;
-  settings::Section root = document.root();
-  const auto count = [&](std::initializer_list<const char*> keys) {
-    return std::ranges::count_if(keys, [&](const char* key) { return root.Has(key); });
-  };
-  if (root.Has("cam0")) {
-    ReadEuroc(root.Child("cam0"), "distortion_coeffs", camera);
-    root.IgnoreRest();  // other cameras
-  } else if (root.Has("intrinsics")) {
-    ReadEuroc(root, "distortion_coefficients", camera);
-  } else if (ReadSlamCamera(root, camera)) {
-    // has read it
-  } else if (count({"camera_matrix", "Camera_Matrix", "image_width"}) > 0) {
-    ReadOpenCv(root, camera);
-  } else if (count({"width", "height", "fx", "fy"}) > 1) {
-    ReadOwn(root, camera);
-  } else {
-    root.IgnoreRest();
-    document.ThrowIfBad();
-    refuse(unknown);
-  }
-  document.ThrowIfBad();
+  const Camera camera = CameraOfText(base::WithoutMark(*content), file);
+  if (const std::string problem = ImplausiblePart(camera); !problem.empty()) refuse(problem);
   return camera;
 }
 
 Camera CameraFrom(const std::string& preset_or_file) {
   std::error_code ignored;  // a name that is no valid path is not a file
-  if (std::filesystem::exists(preset_or_file, ignored)) return ReadCamera(preset_or_file);
+  const bool is_folder = std::filesystem::is_directory(preset_or_file, ignored);
+  if (!is_folder && std::filesystem::exists(preset_or_file, ignored)) return ReadCamera(preset_or_file);
   try {
     return CameraPreset(preset_or_file);
   } catch (const std::invalid_argument& error) {
+    if (is_folder) return ReadCamera(preset_or_file);  // throws: it is one
+    if (preset_or_file.find_first_of("./") != std::string::npos)
+      throw std::invalid_argument("there is no file '" + preset_or_file + "'");
     throw std::invalid_argument(std::string(error.what()) + ", or a camera file that exists");
   }
 }

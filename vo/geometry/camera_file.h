@@ -12,12 +12,13 @@ namespace vo {
 
 // The format is detected from the content: camera.yaml (docs/sequence_format.md); sensor.yaml of an EuRoC camera;
 // camchain.yaml of Kalibr (cam0, pinhole with radtan or equidistant); camera_info of ROS (plumb_bob or equidistant);
-// cv::FileStorage of OpenCV's calibration sample (YAML or XML, fisheye_model included); OpenVINS, ORB-SLAM, camodocal,
-// Basalt, COLMAP, DSO. Lens models with more coefficients are rejected. Throws settings::Error with every problem, with
-// line and column except for OpenCV's XML.
+// cv::FileStorage of OpenCV's calibration sample (YAML or XML, fisheye_model included); OpenVINS, ORB-SLAM, OpenVSLAM,
+// camodocal, Basalt, COLMAP, DSO. Lens models with more coefficients are rejected, and so are focal lengths and
+// principal points that no camera has. Throws settings::Error with every problem, with line and column except for
+// OpenCV's XML.
 Camera ReadCamera(const std::filesystem::path& file);
 
-// Name of a preset, or a file. Also throws std::invalid_argument.
+// Name of a preset, or a file; a preset rather than a folder of that name. Also throws std::invalid_argument.
 Camera CameraFrom(const std::string& preset_or_file);
 
 }  // namespace vo

@@ -24,9 +24,8 @@ std::optional<std::int64_t> StampInSeconds(std::string_view text) {
   return stamp_ns && *stamp_ns >= 0 ? stamp_ns : std::nullopt;
 }
 
-// Associations: TUM's have seconds; ICL-NUIM numbers its frames at 30 Hz.
-std::optional<std::int64_t> StampInSecondsOrFrames(std::string_view text) {
-  if (text.find('.') != std::string_view::npos) return StampInSeconds(text);
+// ICL-NUIM numbers its frames at 30 Hz.
+std::optional<std::int64_t> StampInFrames(std::string_view text) {
   const auto index = text.size() <= 9 ? base::ParseWhole(text) : std::nullopt;
   return index && *index >= 0 ? std::optional((*index * 1'000'000'000 + 15) / 30) : std::nullopt;
 }
@@ -45,6 +44,17 @@ struct ListFormat {
   std::string not_a_stamp, expected;
 };
 
+// Whether an association's first words are seconds: one has a point. ICL-NUIM's have none, TUM's most.
+bool HasSeconds(const fs::path& list) {
+  std::ifstream stream(list);
+  for (std::string line; std::getline(stream, line);) {
+    const std::vector<base::Word> words = base::SplitWords(line);
+    if (!words.empty() && !base::IsComment(words[0].text) && words[0].text.find('.') != std::string_view::npos)
+      return true;
+  }
+  return false;
+}
+
 ListFormat FormatOf(const fs::path& folder, int camera) {
   if (!fs::exists(folder / "rgb.txt")) {
     for (const char* name : {"associations.txt", "association.txt", "associate.txt"}) {
@@ -52,7 +62,7 @@ ListFormat FormatOf(const fs::path& folder, int camera) {
         return {folder / name,
                 folder,
                 4,
-                StampInSecondsOrFrames,
+                HasSeconds(folder / name) ? StampInSeconds : StampInFrames,
                 "a time stamp in seconds or the number of a frame",
                 "stamp depth-file stamp image-file, or stamp image-file stamp depth-file"};
     }

@@ -142,10 +142,13 @@ TEST_F(CameraFile, OfRos) {
   ExpectFisheye(
       vo::ReadCamera(Write("ros.yaml", text + "distortion_model: equidistant\ndistortion_coefficients: {rows: 1, cols: "
                                               "4, data: [-0.0127, 0.0114, -0.0071, 0.0023]}\n")));
-  const fs::path bad =
-      Write("ros.yaml", text + "distortion_model: thin_prism\ndistortion_coefficients: {data: [1, 2]}\n");
-  EXPECT_THAT(ErrorOf(bad), HasSubstr(bad.string() + ":8:"));
-  EXPECT_THAT(ErrorOf(bad), HasSubstr("there are 2 numbers"));
+  for (const auto& [model, words] : {std::pair("thin_prism", ":8:19: 'distortion_model': 'thin_prism' is not known"),
+                                     std::pair("plumb_bob", "there are 2 numbers")}) {
+    const std::string lens = std::string("distortion_model: ") + model + "\ndistortion_coefficients: {data: [1, 2]}\n";
+    const std::string error = ErrorOf(Write("ros.yaml", text + lens));
+    EXPECT_THAT(error, HasSubstr(words));
+    EXPECT_EQ(std::ranges::count(error, '\n'), 0) << error;
+  }
 }
 
 TEST_F(CameraFile, OfKalibr) {
