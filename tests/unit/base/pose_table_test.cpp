@@ -28,14 +28,33 @@ std::vector<std::string> LastOf(const std::string& text, bool is_euroc = false) 
 // The same pose under headers of different column orders.
 TEST(PoseTable, TakesTheOrderOfItsHeader) {
   for (const std::string text :
-       {"# timestamp tx ty tz qx qy qz qw\n7.5 1 2 3 4 5 6 9", "% timestamp tx ty tz qw qx qy qz\n7.5 1 2 3 9 4 5 6",
+       {"# timestamp tx ty tz qx qy qz qw\n7.5 1 2 3 4 5 6 9",
+        "% timestamp tx ty tz qw qx qy qz\n7.5 1 2 3 9 4 5 6",
         "// made by x: position, time t\n# t x y z qw qx qy qz\n7.5 1 2 3 9 4 5 6",
         "\"timestamp\",\"frame\",\"rot_x\",\"rot_y\",\"rot_z\",\"rot_w\",\"pos_x\",\"pos_y\",\"pos_z\"\n"
         "7.5,11,4,5,6,9,1,2,3",
         "Time,header.stamp.secs,header.frame_id,pose.position.x,pose.position.y,pose.position.z,pose.orientation.x,"
         "pose.orientation.y,pose.orientation.z,pose.orientation.w,twist.linear.x\n7.5,6,map,1,2,3,4,5,6,9,8",
         "time; px [m]; py [m]; pz [m]; qx; qy; qz; qw; vx\n7.5;1;2;3;4;5;6;9;8\x1a",
-        "# timestamp(s) tx ty tz qx qy qz qw Pr11\n7.5 1 2 3 4 5 6 9 0 0 0 0 0 0 0 0 0 0 0 0"}) {
+        "# timestamp(s) tx ty tz qx qy qz qw Pr11\n7.5 1 2 3 4 5 6 9 0 0 0 0 0 0 0 0 0 0 0 0",
+        "# format: timestamp tx ty tz qw qx qy qz (w first)\n7.5 1 2 3 9 4 5 6",
+        "# timestamp tx ty tz qx qy qz qw (x forward, z up)\n7.5 1 2 3 4 5 6 9",
+        "Timestamp, Position X, Position Y, Position Z, Orientation W, Orientation X, Orientation Y, Orientation Z\n"
+        "7.5, 1, 2, 3, 9, 4, 5, 6",
+        "timestamp_sec,tx,ty,tz,qw,qx,qy,qz,label\n7.5,1,2,3,9,4,5,6,",
+        "# seconds x_m y_m z_m qw qx qy qz\n7.5 1 2 3 9 4 5 6",
+        "# stamp_secs location_x location_y location_z quat_w quat_x quat_y quat_z\n7.5 1 2 3 9 4 5 6",
+        "t,x,y,z,ow,ox,oy,oz\n7.5,1,2,3,9,4,5,6",
+        "# timestamp x y z w i j k\n7.5 1 2 3 9 4 5 6",
+        "timestamp,speed_x,speed_y,speed_z,x,y,z,qx,qy,qz,qw\n7.5,8,8,8,1,2,3,4,5,6,9",
+        "timestamp,x,y,z,orientation_yaw,orientation_w,orientation_x,orientation_y,orientation_z\n7.5,1,2,3,8,9,4,5,6",
+        "__time,/vo/orientation/w,/vo/orientation/x,/vo/orientation/y,/vo/orientation/z,/vo/position/x,/vo/position/y,"
+        "/vo/position/z\n7.5,9,4,5,6,1,2,3",
+        ",timestamp,tx,ty,tz,qw,qx,qy,qz\n0,7.5,1,2,3,9,4,5,6",
+        "\"t\",\"x\",\"y\",\"z\",\"qx\",\"qy\",\"qz\",\"qw\"\n\"7.5\",\"1\",\"2\",\"3\",\"4\",\"5\",\"6\",\"9\"",
+        "Time,header.stamp.secs,header.stamp.nsecs,header.frame_id,pose.position.x,pose.position.y,pose.position.z,"
+        "pose.orientation.x,pose.orientation.y,pose.orientation.z,pose.orientation.w\n7.5,7,500000000,,1,2,3,4,5,6,"
+        "9"}) {
     EXPECT_THAT(LastOf(text), ElementsAre("7.5", "1", "2", "3", "4", "5", "6", "9")) << text;
   }
 }
@@ -49,9 +68,17 @@ TEST(PoseTable, NanosecondsWhereTheTableHasThem) {
         "%time,field.header.seq,field.header.stamp,field.header.frame_id,field.pose.position.x,field.pose.position.y,"
         "field.pose.position.z,field.pose.orientation.x,field.pose.orientation.y,field.pose.orientation.z,"
         "field.pose.orientation.w\n80,1,75,map,1,2,3,4,5,6,9",
-        "75,1,2,3,9,4,5,6,0,0,0,0,0,0,0,0,0"}) {
+        "%time,field.header.stamp,field.child_frame_id,field.transform.translation.x,field.transform.translation.y,"
+        "field.transform.translation.z,field.transform.rotation.x,field.transform.rotation.y,field.transform.rotation."
+        "z,"
+        "field.transform.rotation.w\n80,75,,1,2,3,4,5,6,9",
+        "timestamp_ns tx ty tz qx qy qz qw\n75 1 2 3 4 5 6 9", "75,1,2,3,9,4,5,6,0,0,0,0,0,0,0,0,0"}) {
     EXPECT_THAT(LastOf(text), ElementsAre("75e-9", "1", "2", "3", "4", "5", "6", "9")) << text;
   }
+  EXPECT_EQ(LastOf("#t [ns],x,y,z,qw,qx,qy,qz\n1.5e+18,1,2,3,9,4,5,6").at(0), "1.5e9");
+  EXPECT_EQ(LastOf("#t [ms],x,y,z,qw,qx,qy,qz\n12.5,1,2,3,9,4,5,6").at(0), "12.5e-3");
+  EXPECT_EQ(LastOf("#t [ns],x,y,z,qw,qx,qy,qz\n12.5,1,2,3,9,4,5,6").at(0), "12.5") << "seconds, the header kept";
+  EXPECT_EQ(LastOf("%time x y z qx qy qz qw\n75 1 2 3 4 5 6 9").at(0), "75") << "a comment of MATLAB's";
   EXPECT_THAT(LastOf("75 1 2 3 9 4 5 6", true), ElementsAre("75e-9", "1", "2", "3", "4", "5", "6", "9"));
 }
 
@@ -66,7 +93,17 @@ TEST(PoseTable, RefusesOtherKindsByTheFirstRow) {
            {"VERTEX_SE3:QUAT 0 1 2 3 0 0 0 1", "g2o"},
            {"# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n1 1 0 0 0 1 2 3 1 a.png", "COLMAP"},
            {"2014-06-24T19:03:00 1 2 3 0 0 0 1", "is not a time in seconds"},
-           {"1403636579763555584,1,2,3", "4 columns where 8 are expected"}}) {
+           {"1403636579763555584,1,2,3", "4 columns where 8 are expected"},
+           {"1.5,1,2,3,0,0,0,1,0,0,0,0,0,0,0,0,0", "sixteen numbers"},
+           {"1.5 1 2 3 0 0 0 1 0 0 0 a", "12 columns"},
+           {"{", "is JSON"},
+           {"#ROSBAG V2.0", "is a ROS bag"},
+           {"# timestamp [s] position x y z [m] quaternion w x y z\n1 1 2 3 1 0 0 0", "no column for qx, qy, qz"},
+           {"# id tx ty tz qw qx qy qz\n1 1 2 3 1 0 0 0", "no column for timestamp"},
+           {"t,x,y,z,q0,q1,q2,q3\n1,1,2,3,1,0,0,0", "no column for qx, qy, qz, qw"},
+           {"t,gt_px,gt_py,gt_pz,gt_qx,gt_qy,gt_qz,gt_qw,px,py,pz,qx,qy,qz,qw\n1,1,2,3,0,0,0,1,1,2,3,0,0,0,1",
+            "two poses"},
+           {"t,x,y,z,v,qw,qx,qy,qz\n1,1,2,3,1,0,0,0", "the header names 9 columns, and this row has 8"}}) {
     const std::vector<std::string> said = LastOf(text);
     ASSERT_EQ(said.size(), 1u) << text;
     EXPECT_THAT(said[0], HasSubstr(words));

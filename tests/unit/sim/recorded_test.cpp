@@ -107,7 +107,7 @@ TEST(TumTrajectory, FilesThatAreNone) {
   std::string long_file = "0 0 0 0 0 0 0 1\n";
   for (int i = 0; i < 1000; ++i) long_file += "junk\n";
   EXPECT_THAT(Message([&] { ReadTumTrajectory(folder.Write("junk.txt", long_file.substr(16))); }),
-              testing::AllOf(HasSubstr("junk.txt:1:1: 1 columns where 8"), testing::Not(HasSubstr("\n"))));
+              testing::AllOf(HasSubstr("junk.txt:1:1: 1 column where 8"), testing::Not(HasSubstr("\n"))));
   const std::string message = Message([&] { ReadTumTrajectory(folder.Write("junk.txt", long_file)); });
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 20) << "twenty problems and a word that there are more";
 }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "tools/bench/errors.h"
@@ -20,6 +21,14 @@ constexpr const char* kNees = "NEES of the pose, per dof";
 
 // A run folder with all that it has, or a trajectory alone.
 evaluation::EstimateRun ReadEstimate(const fs::path& path) {
+  if (fs::is_directory(path) && !fs::exists(path / "estimate.txt") && fs::exists(path / kResultMarker)) {
+    std::vector<std::string> runs;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path))
+      if (entry.path().filename() == "estimate.txt") runs.push_back(entry.path().parent_path().string());
+    std::ranges::sort(runs);
+    throw BadInput(fmt::format("{} holds {} runs: name one{}", path.string(), runs.size(),
+                               runs.empty() ? "" : ", such as " + runs.front()));
+  }
   if (fs::is_directory(path)) return evaluation::ReadEstimateRun(path);
   evaluation::EstimateRun run;
   run.trajectory = evaluation::ReadTrajectory(path);

@@ -38,14 +38,39 @@ Experiment ReadSettings(const TrackOptions& options) {
   return ReadTrackSettings(document);
 }
 
+// Throws where Sim(3) has no basis: its error would be 0 or that of another alignment.
+void RequireBasis(const evaluation::TrajectoryErrors& errors) {
+  if (errors.pairs < 3)
+    throw evaluation::InputError(
+        {fmt::format("{} of the poses {} a true one at its time: fewer than three determine no "
+                     "alignment; are the stamps of both of one clock?",
+                     errors.pairs, errors.pairs == 1 ? "has" : "have")});
+  if (!errors.sim3.similarity.scale_determined)
+    throw evaluation::InputError({"the true or the estimated positions do not move: Sim(3) has no scale"});
+}
+
+// Preset, or file.
+std::string CalibrationOf(const fs::path& sequence, const std::optional<std::string>& camera) {
+  if (camera) return *camera;
+  for (const char* file : {"camera.yaml", "mav0/cam0/sensor.yaml"})
+    if (fs::exists(sequence / file)) return (sequence / file).string();
+  throw BadInput(sequence.string() +
+                 ": no camera.yaml in it; say which camera with --camera PRESET|FILE (`camera` in a campaign)");
+}
+
+void RequireSize(const vo::Frame& frame, const vo::Camera& camera, const TrackOptions& options) {
+  if (frame.image.cols == camera.width && frame.image.rows == camera.height) return;
+  throw BadInput(
+      fmt::format("{}: is of images of {} x {} pixels, but those of {} are {} x {}: give a calibration of "
+                  "this size with --camera",
+                  CalibrationOf(options.sequence, options.camera), camera.width, camera.height,
+                  options.sequence.string(), frame.image.cols, frame.image.rows));
+}
+
 }  // namespace
 
 vo::Camera CameraOfSequence(const fs::path& sequence, const std::optional<std::string>& camera) {
-  if (camera) return vo::CameraFrom(*camera);
-  for (const char* file : {"camera.yaml", "mav0/cam0/sensor.yaml"})
-    if (fs::exists(sequence / file)) return vo::ReadCamera(sequence / file);
-  throw BadInput(sequence.string() +
-                 ": no camera.yaml in it; say which camera with --camera PRESET|FILE (`camera` in a campaign)");
+  return vo::CameraFrom(CalibrationOf(sequence, camera));
 }
 
 std::string RecordOfTracking(const vo::Camera& c, const std::string& resolved) {
@@ -98,6 +123,7 @@ void Track(const TrackOptions& options) {
       return vo::PreparedFrame(std::move(*frame));
     };
     while (const std::optional<vo::PreparedFrame> frame = Input(next)) {
+      RequireSize(frame->frame, camera, options);
       try {
         tracker.Track(*frame);
       } catch (const vo::FilterFault& fault) {
@@ -122,7 +148,9 @@ void Track(const TrackOptions& options) {
 
   if (truth) {
     try {
-      run.judged = evaluation::JudgeSeries(run.run, truth->poses, truth->velocities, JudgeOptionsOf(settings.prior));
+      auto judged = evaluation::JudgeSeries(run.run, truth->poses, truth->velocities, JudgeOptionsOf(settings.prior));
+      RequireBasis(judged.metrics.errors);
+      run.judged = std::move(judged);
       WriteTruth(out.path(), truth->poses, truth->velocities);
     } catch (const evaluation::InputError& error) {  // of another time: the estimate is kept all the same
       description.notes.push_back(fmt::format("Not judged: {}", error.what()));

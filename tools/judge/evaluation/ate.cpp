@@ -1,7 +1,9 @@
 #include "tools/judge/evaluation/ate.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -57,6 +59,18 @@ Similarity Fit(const MatchedTrajectories& matched, Alignment alignment) {
   return result;
 }
 
+// RMS distance of the positions from their mean along their second principal axis: the lever arm of the rotation about
+// the first.
+double SpreadAcross(const Trajectory& trajectory) {
+  const double n = static_cast<double>(trajectory.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const StampedPose& pose : trajectory) mean += pose.p_WC / n;
+  Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
+  for (const StampedPose& pose : trajectory) P += (pose.p_WC - mean) * (pose.p_WC - mean).transpose() / n;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(P, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, axes.eigenvalues()[1]));
+}
+
 }  // namespace
 
 std::string Name(Alignment alignment) {
@@ -109,10 +123,13 @@ PoseErrors ErrorsAfter(const Similarity& similarity, const MatchedTrajectories& 
 }
 
 Ate ComputeAte(const MatchedTrajectories& matched, Alignment alignment) {
-  const Similarity similarity = Align(matched, alignment);
+  Similarity similarity = Align(matched, alignment);
   PoseErrors errors = ErrorsAfter(similarity, matched);
+  const Statistics position = Summarise(errors.position);
+  const bool fits_rotation = alignment == Alignment::se3 || alignment == Alignment::sim3;
+  if (fits_rotation && SpreadAcross(matched.truth) < position.rmse) similarity.rotation_determined = false;
   if (!similarity.rotation_determined) errors.orientation.clear();
-  const Statistics position = Summarise(errors.position), orientation = Summarise(errors.orientation);
+  const Statistics orientation = Summarise(errors.orientation);
   return {alignment, similarity, std::move(errors.position), std::move(errors.orientation), position, orientation};
 }
 

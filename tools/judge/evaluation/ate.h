@@ -58,7 +58,9 @@ PoseErrors ErrorsAfter(const Similarity& similarity, const MatchedTrajectories& 
 
 struct Ate {
   Alignment alignment = Alignment::none;
-  Similarity similarity;                   // that was applied to the estimate
+  // That was applied to the estimate. Its rotation counts as undetermined also where the true positions spread less
+  // across their line than the error of the positions: orientation errors are then those of the alignment.
+  Similarity similarity;
   std::vector<double> position_errors;     // |p_aligned - p_truth| per pair [m]
   std::vector<double> orientation_errors;  // per pair [rad]; empty if the rotation is undetermined
   Statistics position;                     // [m]

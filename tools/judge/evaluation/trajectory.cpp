@@ -43,6 +43,7 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
   Problems problems;
   Trajectory trajectory;
   base::PoseTable table(reading == Reading::euroc);
+  int unordered = 0;
   for (const Line& text : Lines(file, '\n')) {
     Line line{text.number, {}};
     std::string other_kind;
@@ -66,9 +67,10 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
     }
     if (reading != Reading::as_written) pose.q_WC.normalize();
     if (!trajectory.empty() && stamp < trajectory.back().stamp_ns) {
+      if (++unordered > 1) continue;  // one cause
       problems.Add(file, line.number, line.tokens[0].column,
                    "time " + line.tokens[0].text + " lies before " + base::FormatSeconds(trajectory.back().stamp_ns) +
-                       ", the time of the pose above");
+                       ", the time of the pose above: sort the lines (`sort -g`)");
       continue;
     }
     if (!trajectory.empty() && stamp == trajectory.back().stamp_ns) {

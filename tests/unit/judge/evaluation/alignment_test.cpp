@@ -153,6 +153,24 @@ TEST(Align, OneDirectionThreshold) {
   EXPECT_FALSE(rotation_determined(0.97 * least));
 }
 
+// A line of 3 m, rounded to 0.1 mm as files are: 1 cm of noise turns the alignment about it by any angle. Control: the
+// same with a bend.
+TEST(Ate, HasNoOrientationErrorsOfPositionsNearlyOnALine) {
+  TestRandom random(12);
+  for (const double bend : {0.0, 0.5}) {
+    MatchedTrajectories matched;
+    for (int i = 0; i < 100; ++i) {
+      const double t = i / 100.0;
+      const Eigen::Vector3d p = t * Eigen::Vector3d(1, 2, 2) + bend * t * t * Eigen::Vector3d(2, -1, 0);
+      matched.truth.push_back({i, (p * 1e4).array().round() / 1e4, Eigen::Quaterniond::Identity()});
+      matched.estimate.push_back({i, p + 0.01 * random.Normals(3), Eigen::Quaterniond::Identity()});
+    }
+    const Ate ate = ComputeAte(matched, Alignment::sim3);
+    EXPECT_EQ(ate.similarity.rotation_determined, bend > 0);
+    EXPECT_EQ(ate.orientation_errors.empty(), bend == 0);
+  }
+}
+
 TEST(Align, RefusesWhatIsNotMatched) {
   TestRandom random(11);
   const MatchedTrajectories matched = NoisyPair(random, 3);

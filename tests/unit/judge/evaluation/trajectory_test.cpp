@@ -59,10 +59,10 @@ TEST(ReadTrajectory, Thresholds) {
 TEST(ReadTrajectory, GoesOnFromTheLastGoodLine) {
   const std::string said =
       Complaint("5 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n4 0 0 0 0 0 0 1\n9 0 0 0 0 0 0 2\n6 0 0 0 0 0 0 1\n");
-  EXPECT_THAT(said, HasSubstr("t.txt:2:1: time 3 "));
-  EXPECT_THAT(said, HasSubstr("t.txt:3:1: time 4 lies before 5.000000000"));
+  EXPECT_THAT(said, HasSubstr("t.txt:2:1: time 3 lies before 5.000000000"));
+  EXPECT_THAT(said, HasSubstr("sort the lines")) << "once";
   EXPECT_THAT(said, HasSubstr("t.txt:4:9: the quaternion's norm is 2"));
-  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 2) << said;
+  EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
 }
 
 TEST(ReadTrajectory, NormalisesUnlessAskedForWhatIsThere) {

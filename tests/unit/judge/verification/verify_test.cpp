@@ -420,12 +420,13 @@ TEST_F(VerifyTest, ACameraOfAnySizeIsRefused) {
   const fs::path folder = Copy("plain");
   const std::string camera = Read(folder / "camera.yaml");
   for (const auto& [size, said] :
-       {std::pair{"width: 40000\nheight: 1\n", "camera.yaml: 40000 x 1 pixels: a side may have 32768"},
+       {std::pair{"width: 40000\nheight: 120\n", "camera.yaml: 40000 x 120 pixels: a side may have 32768"},
         {"width: 32000\nheight: 1000\n", "camera.yaml: 32000 x 1000 pixels in "}}) {
     const std::string before = "width: 160\nheight: 120\n";
     std::string changed = camera;
     ASSERT_TRUE(changed.starts_with(before)) << camera;
     changed.replace(0, before.size(), size);
+    for (const char* focal : {"fx: ", "fy: "}) changed.replace(changed.find(focal), 4, std::string(focal) + "1000");
     Write(folder / "camera.yaml", changed);
     try {
       Verify(folder);

@@ -1,0 +1,30 @@
+// Header of a table of poses: which column holds which of timestamp tx ty tz qx qy qz qw, and the unit of its stamps.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/base/text.h"
+
+namespace base {
+
+// Cells of a line: what commas or semicolons separate where it has seven and more, without blanks and quotes about
+// them (some may be empty, the last is not); else its words.
+std::vector<Word> Cells(std::string_view line);
+
+struct PoseHeader {
+  static constexpr std::size_t kPose = 8;
+  std::array<std::size_t, kPose> columns{};
+  std::size_t count = 0;  // of named columns
+  bool is_prose = false;  // words, of which the eight follow each other: those of a row of eight
+  int exponent = 0;       // of a stamp's unit, in powers of ten: -9 for nanoseconds
+};
+
+// None for a comment. problem: a header that names some columns of a pose, and not all, or two poses.
+std::optional<PoseHeader> ReadPoseHeader(std::string_view line, std::string& problem);
+
+}  // namespace base
