@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cmath>
 #include <glm/mat3x3.hpp>
 #include <memory>
@@ -15,6 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "sim/world/collada_text.h"
 #include "sim/world/mesh_readers.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/files.h"
@@ -49,7 +49,7 @@ class BoundedStream : public Assimp::IOStream {
 // File access of importers, which silently skip side files that cannot be opened.
 class ImporterFiles : public Assimp::DefaultIOSystem {
  public:
-  explicit ImporterFiles(MeshFiles& files) : files_(files) {}
+  ImporterFiles(MeshFiles& files, std::vector<std::string>& warnings) : files_(files), warnings_(warnings) {}
   bool Exists(const char* file) const override { return files_.MayOpen(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     std::unique_ptr<Assimp::IOStream> stream(mode[0] == 'r' && files_.MayOpen(file) ? DefaultIOSystem::Open(file, mode)
@@ -59,25 +59,21 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
       return nullptr;
     }
     files_.Opened(file, stream->FileSize());
-    if (LowerExtension(file) == ".dae") return WithoutBlanks(file);
+    if (LowerExtension(file) == ".dae") return Collada(file);
     return new BoundedStream(std::move(stream));  // Close() deletes it
   }
 
  private:
-  // Removes blanks at the beginning of an element's text, which assimp (5.2) takes for the end of its numbers.
-  static Assimp::IOStream* WithoutBlanks(const fs::path& file) {
-    const std::string text = base::ReadFile(file).value_or("");
+  Assimp::IOStream* Collada(const fs::path& file) {
+    warnings_.clear();  // assimp opens the file several times
+    const std::string text = ColladaForAssimp(base::ReadFile(file).value_or(""), warnings_);
     auto* bytes = new std::uint8_t[text.size() + 1];
-    std::size_t size = 0;
-    bool skips = false;
-    for (const char c : text) {
-      skips = c == '>' || (skips && std::isspace(static_cast<unsigned char>(c)) != 0);
-      if (!skips || c == '>') bytes[size++] = static_cast<std::uint8_t>(c);
-    }
-    return new Assimp::MemoryIOStream(bytes, size, true);  // owns them
+    std::ranges::copy(text, bytes);
+    return new Assimp::MemoryIOStream(bytes, text.size(), true);  // owns them
   }
 
   MeshFiles& files_;
+  std::vector<std::string>& warnings_;
 };
 
 // FBX states its unit in centimetres and its axes; assimp (5.2) converts neither.
@@ -205,7 +201,8 @@ class Converter {
     aiColor4D color(1, 1, 1, 1);
     if (in.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
       aiColor3D diffuse(1, 1, 1);
-      const bool is_replaced = extension_ == ".fbx" && has(base);  // FBX: a texture takes the colour's place
+      // FBX, and glTF 1.0, where assimp gives black: a texture takes the colour's place.
+      const bool is_replaced = (extension_ == ".fbx" || extension_ == ".gltf" || extension_ == ".glb") && has(base);
       if (!is_replaced) in.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse);
       color = {diffuse.r, diffuse.g, diffuse.b, 1};
     }
@@ -266,7 +263,7 @@ class Converter {
 
 void ReadByAssimp(MeshFiles& files, MeshImport& import) {
   Assimp::Importer importer;
-  importer.SetIOHandler(new ImporterFiles(files));  // the importer owns it
+  importer.SetIOHandler(new ImporterFiles(files, import.warnings));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(files.mesh().string(), aiProcess_ValidateDataStructure);
   if (scene != nullptr) import.problem = CountProblem(*scene);  // too large a scene is not processed
@@ -279,7 +276,9 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
     const std::string reason = importer.GetErrorString();
     const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's message
     const bool too_much = reason.find("bad_alloc") != std::string::npos;              // the library's
-    import.problem = only_lines ? "has no triangles"
+    const bool unknown = reason.find("No suitable reader") != std::string::npos;
+    import.problem = only_lines ? "has no triangles: points and lines are not rendered"
+                     : unknown  ? "is of a kind that is not read: export it as .glb, .obj or .ply"
                      : too_much ? "cannot be read: the importer (assimp) needs more memory than a file of this size may"
                                 : "cannot be read: " + reason;
   }

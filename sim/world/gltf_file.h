@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -26,17 +27,44 @@ struct GltfTable {
 // glTF 1.0, which assimp reads.
 struct OlderGltf {};
 
+// A problem that names the item of the document that it is of.
+struct GltfItemError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// The text of an exception of the JSON library, without its number.
+std::string TextOf(const nlohmann::json::exception& error);
+
+// Calls read(). Its problems are of an item of a list, unless they name one themselves.
+template <class Read>
+auto ReadItem(const char* list, std::size_t index, const Read& read) {
+  const std::string item = std::string(list) + "[" + std::to_string(index) + "]";
+  try {
+    return read();
+  } catch (const GltfItemError&) {
+    throw;
+  } catch (const nlohmann::json::exception& error) {
+    throw GltfItemError(item + " is not glTF as its schema has it: " + TextOf(error));
+  } catch (const std::runtime_error& error) {
+    throw GltfItemError(item + ": " + error.what());
+  }
+}
+
+void WarnOnce(MeshImport& import, const std::string& what);
+
 // Throws std::runtime_error or nlohmann::json::exception for invalid files; OlderGltf.
 class GltfFile {
  public:
-  explicit GltfFile(MeshFiles& files);
+  // import: receives warnings.
+  GltfFile(MeshFiles& files, MeshImport& import);
 
   const nlohmann::json& document() const { return document_; }
   // The item of a list of the document.
   const nlohmann::json& At(const char* list, std::size_t index) const;
   // An item's list or object; an empty one where it is absent.
   static const nlohmann::json& Child(const nlohmann::json& object, const char* key);
-  static std::size_t Index(const nlohmann::json& object, const char* key) { return object.at(key).get<std::size_t>(); }
+  static std::size_t Index(const nlohmann::json& object, const char* key);
+  static std::vector<std::size_t> Indices(const nlohmann::json& object, const char* key);  // none where it is absent
   template <std::size_t n>
   static std::array<double, n> Numbers(const nlohmann::json& object, const char* key, std::array<double, n> otherwise) {
     const auto found = object.find(key);
@@ -56,10 +84,13 @@ class GltfFile {
 
  private:
   const std::string& Buffer(std::size_t index);
+  std::string ReadFile(const std::string& uri);
+  GltfTable TableOf(std::size_t accessor);
   template <class Store>
   void ReadComponents(std::size_t accessor, const Store& store);
 
   MeshFiles& files_;
+  MeshImport& import_;
   nlohmann::json document_;
   std::optional<std::string> binary_;  // the second chunk of a GLB
   std::map<std::size_t, std::string> buffers_;

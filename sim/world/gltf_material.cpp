@@ -14,10 +14,6 @@ constexpr const char* kBasis =
 
 }  // namespace
 
-void WarnOnce(MeshImport& import, const std::string& what) {
-  if (std::ranges::find(import.warnings, what) == import.warnings.end()) import.warnings.push_back(what);
-}
-
 ImportedMap GltfMaterials::ImageOf(const json& texture) {
   const json *webp = GltfFile::Extension(texture, "EXT_texture_webp"),
              *basis = GltfFile::Extension(texture, "KHR_texture_basisu");
@@ -36,7 +32,8 @@ ImportedMap GltfMaterials::ImageOf(const json& texture) {
     const auto view = file_.View(GltfFile::Index(image, "bufferView"));
     return name->second = Embed({reinterpret_cast<const char*>(view.data()), view.size()});
   }
-  const std::string uri = image.at("uri").get<std::string>();
+  const std::string uri = image.value("uri", "");
+  if (uri.empty()) return name->second = ImportedMap{"images[" + std::to_string(index) + "]"};  // no such file
   if (const std::optional<std::string> data = GltfFile::DataOf(uri)) return name->second = Embed(*data);
   return name->second = ImportedMap{uri};
 }
@@ -109,7 +106,9 @@ unsigned GltfMaterials::MaterialOf(const json& primitive) {
       primitive.contains("material") ? std::optional(GltfFile::Index(primitive, "material")) : std::nullopt;
   std::vector<ImportedMaterial>& materials = import_.scene.materials;
   const auto [at, is_new] = material_of_.try_emplace(index, static_cast<unsigned>(materials.size()));
-  if (is_new) materials.push_back(Read(index ? file_.At("materials", *index) : json::object()));
+  if (!is_new) return at->second;
+  const json in = index ? file_.At("materials", *index) : json::object();
+  materials.push_back(index ? ReadItem("materials", *index, [&] { return Read(in); }) : Read(in));
   return at->second;
 }
 

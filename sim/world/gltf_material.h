@@ -12,8 +12,6 @@
 
 namespace sim {
 
-void WarnOnce(MeshImport& import, const std::string& what);
-
 class GltfMaterials {
  public:
   GltfMaterials(GltfFile& file, MeshImport& import) : file_(file), import_(import) {}

@@ -4,6 +4,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <set>
@@ -65,17 +66,20 @@ struct Unsupported : std::runtime_error {
 
 class GltfReader {
  public:
-  GltfReader(MeshFiles& files, MeshImport& import) : file_(files), import_(import), materials_(file_, import) {}
+  GltfReader(MeshFiles& files, MeshImport& import) : file_(files, import), import_(import), materials_(file_, import) {}
 
   void Read() {
     CheckExtensions();
-    for (const auto& [list, what] :
-         {std::pair{"animations", "has animations: the scene is rendered as it stands without them"},
-          {"skins", "has skins: their meshes are rendered as modelled, not as posed"}}) {
-      if (!GltfFile::Child(file_.document(), list).empty()) Warn(what);
-    }
-    for (const json& mesh : GltfFile::Child(file_.document(), "meshes")) ReadMesh(mesh);
-    ReadNodes();
+    if (!GltfFile::Child(file_.document(), "animations").empty())
+      Warn("has animations: the scene is rendered as it stands without them");
+    for (const std::size_t root : Roots()) ReadNode(root, glm::dmat4(1), 0, &GltfReader::AppendInstances);
+    std::set<MeshKey> shown;
+    for (const Instance& instance : instances_) shown.insert(instance.mesh);
+    for (const MeshKey& mesh : shown) ReadItem("meshes", mesh.first, [&] { ReadMesh(mesh); });
+    AppendNodes();
+    if (import_.scene.meshes.empty())
+      import_.problem = std::string("has no triangles: ") +
+                        (shown.empty() ? "its scene shows no mesh" : "its meshes are empty, or of points and lines");
   }
 
   void ReadCameras() {
@@ -109,28 +113,30 @@ class GltfReader {
 
   // ---------------------------------------------------------------------------------------------------- meshes
 
-  void ReadMesh(const json& mesh) {
-    std::vector<unsigned>& parts = meshes_.emplace_back();
-    const json& weights = GltfFile::Child(mesh, "weights");
-    const bool morphs = std::any_of(weights.begin(), weights.end(), [](const json& w) { return w != 0.0; });
+  using MeshKey = std::pair<std::size_t, std::optional<std::size_t>>;  // in the document; with the skin that poses it
+
+  void ReadMesh(const MeshKey& key) {
+    const std::size_t index = key.first;
+    const json& mesh = file_.At("meshes", index);
+    std::vector<unsigned>& parts = meshes_[key];
+    const std::vector<glm::dmat4> joints = key.second ? JointsOf(*key.second) : std::vector<glm::dmat4>();
     for (const json& primitive : GltfFile::Child(mesh, "primitives")) {
-      if (morphs && primitive.contains("targets")) Warn("has morph targets: the meshes are rendered without them");
       const int mode = primitive.value("mode", kTriangles);
       if (mode < kTriangles || mode > kFan) {
         Warn("has points or lines: they are left out");
         continue;
       }
       ImportedMesh built;
-      built.name = mesh.value("name", "meshes[" + std::to_string(meshes_.size() - 1) + "]");
+      built.name = mesh.value("name", "meshes[" + std::to_string(index) + "]");
       built.material = materials_.MaterialOf(primitive);
-      ReadPrimitive(primitive, mode, built);
+      ReadPrimitive(primitive, mode, joints, built);
       if (built.positions.empty()) continue;
       parts.push_back(static_cast<unsigned>(import_.scene.meshes.size()));
       import_.scene.meshes.push_back(std::move(built));
     }
   }
 
-  void ReadPrimitive(const json& primitive, int mode, ImportedMesh& mesh) {
+  void ReadPrimitive(const json& primitive, int mode, const std::vector<glm::dmat4>& joints, ImportedMesh& mesh) {
     const json& attributes = GltfFile::Child(primitive, "attributes");
     std::optional<DracoMesh> draco;
     if (const json* how = GltfFile::Extension(primitive, "KHR_draco_mesh_compression")) {
@@ -160,10 +166,15 @@ class GltfReader {
     };
     append(*positions, mesh.positions);
     if (const auto normals = table("NORMAL", 3)) append(*normals, mesh.normals);
+    if (!joints.empty()) Pose(table, joints, mesh);
     if (const auto colors = table("COLOR_0", 3)) {
+      const json& accessor = file_.At("accessors", GltfFile::Index(attributes, "COLOR_0"));
+      const int type = accessor.value("componentType", 0);
+      const float unit = accessor.value("normalized", false) ? 1 : GltfFile::Normalised(1, type, true);
+      if (unit != 1) Warn("vertex colours are whole numbers that are not normalised: they are taken as if they were");
       for (std::size_t i = 0; i < colors->count; ++i)
-        mesh.colors.emplace_back(colors->at(i, 0), colors->at(i, 1), colors->at(i, 2),
-                                 colors->columns > 3 ? colors->at(i, 3) : 1.0f);
+        mesh.colors.emplace_back(unit * colors->at(i, 0), unit * colors->at(i, 1), unit * colors->at(i, 2),
+                                 colors->columns > 3 ? unit * colors->at(i, 3) : 1.0f);
     }
     for (std::size_t set = 0; set < kMostUvSets; ++set) {
       const auto uvs = table("TEXCOORD_" + std::to_string(set), 2);
@@ -181,6 +192,80 @@ class GltfReader {
       indices.resize(mesh.positions.size());
       std::iota(indices.begin(), indices.end(), 0u);
     }
+    AppendTriangles(indices, mode, mesh);
+    const UvChoice& uv = import_.scene.materials[mesh.material].normal_map.uv;
+    if (import_.scene.materials[mesh.material].normal_map.picture.empty() || uv.channel >= mesh.uvs.size()) return;
+    if (const auto tangents = table("TANGENT", 4); tangents && Contradicts(*tangents, mesh, uv))
+      Warn("has tangents that are not those of the texture coordinates: normal maps follow the coordinates");
+  }
+
+  // Of each joint of a skin: the file's space from that of the mesh.
+  std::vector<glm::dmat4> JointsOf(std::size_t index) {
+    const json& skin = file_.At("skins", index);
+    const std::vector<std::size_t> nodes = GltfFile::Indices(skin, "joints");
+    GltfTable inverses;
+    if (skin.contains("inverseBindMatrices")) {
+      inverses = file_.ReadTable(GltfFile::Index(skin, "inverseBindMatrices"));
+      if (inverses.columns != 16 || inverses.count < nodes.size())
+        throw std::runtime_error("the inverseBindMatrices of its skin are not one for each joint");
+    }
+    std::vector<glm::dmat4> joints;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      const auto found = transforms_.find(nodes[i]);
+      joints.push_back(found == transforms_.end() ? glm::dmat4(1) : found->second);
+      glm::dmat4 inverse(1);
+      for (int k = 0; k < 16 && inverses.count > 0; ++k)
+        inverse[k / 4][k % 4] = inverses.at(i, static_cast<std::size_t>(k));
+      joints.back() *= inverse;
+    }
+    return joints;
+  }
+
+  // Moves vertices to where their joints stand.
+  template <class Table>
+  static void Pose(const Table& table, const std::vector<glm::dmat4>& joints, ImportedMesh& mesh) {
+    std::vector<glm::dmat4> sums(mesh.positions.size(), glm::dmat4(0));
+    for (const std::string set : {"_0", "_1"}) {
+      const auto which = table("JOINTS" + set, 4), weights = table("WEIGHTS" + set, 4);
+      for (std::size_t k = 0; which && weights && k < 4 * which->count; ++k) {
+        const float joint = which->at(k / 4, k % 4), weight = weights->at(k / 4, k % 4);
+        if (weight == 0) continue;
+        if (!(joint >= 0 && joint < static_cast<float>(joints.size())))
+          throw std::runtime_error("a vertex names a joint that does not exist");
+        sums[k / 4] += static_cast<double>(weight) * joints[static_cast<std::size_t>(joint)];
+      }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const glm::dmat4 posed = sums[i][3][3] > 0 ? sums[i] / sums[i][3][3] : joints[0];  // the weights' sum is 1 or 0
+      mesh.positions[i] = posed * glm::dvec4(mesh.positions[i], 1);
+      if (!mesh.normals.empty())
+        mesh.normals[i] = glm::transpose(glm::inverse(glm::dmat3(posed))) * glm::dvec3(mesh.normals[i]);
+    }
+  }
+
+  // Whether tangents differ from those of texture coordinates by more than 60 degrees, or in their side, on most
+  // triangles.
+  static bool Contradicts(const GltfTable& tangents, const ImportedMesh& mesh, const UvChoice& choice) {
+    const std::vector<glm::vec2>& uvs = mesh.uvs[choice.channel];
+    std::size_t against = 0;
+    for (const glm::uvec3& t : mesh.triangles) {
+      if (std::max({t.x, t.y, t.z}) >= uvs.size()) continue;
+      const glm::dmat3x2 transform = choice.transform;
+      const auto at = [&](unsigned i) { return transform * glm::dvec3(uvs[i].x, 1 - uvs[i].y, 1); };
+      const glm::dvec2 a = at(t.y) - at(t.x), b = at(t.z) - at(t.x);
+      const glm::dvec3 p = mesh.positions[t.y] - mesh.positions[t.x], q = mesh.positions[t.z] - mesh.positions[t.x];
+      const double area = b.x * a.y - a.x * b.y;  // of the texture, v up
+      const glm::dvec3 own = (q * a.y - p * b.y) * (area < 0 ? -1.0 : 1.0);
+      glm::dvec4 given(0);
+      for (const unsigned i : {t.x, t.y, t.z})
+        given += glm::dvec4(tangents.at(i, 0), tangents.at(i, 1), tangents.at(i, 2), tangents.at(i, 3));
+      const double along = glm::dot(own, glm::dvec3(given));
+      if (along < 0.5 * glm::length(own) * glm::length(glm::dvec3(given)) || given.w * area < 0) ++against;
+    }
+    return 2 * against > mesh.triangles.size();
+  }
+
+  static void AppendTriangles(const std::vector<std::uint32_t>& indices, int mode, ImportedMesh& mesh) {
     const std::size_t n = indices.size(), step = mode == kTriangles ? 3 : 1;
     for (std::size_t i = 0; i + 2 < n; i += step) {
       if (mode == kFan) {
@@ -196,7 +281,7 @@ class GltfReader {
 
   struct Instance {
     glm::dmat4 transform;
-    std::size_t mesh;
+    MeshKey mesh;
   };
 
   static glm::dmat4 FromTrs(const glm::dvec3& t, const glm::dquat& r, const glm::dvec3& s) {
@@ -217,16 +302,27 @@ class GltfReader {
   }
 
   // append(node, its transform), of all nodes; of an invisible one and its children cameras alone.
-  void ReadNode(std::size_t index, const glm::dmat4& parent, int depth,
-                void (GltfReader::*append)(const json&, const glm::dmat4&)) {
+  using Append = void (GltfReader::*)(const json&, const glm::dmat4&);
+  void ReadNode(std::size_t index, const glm::dmat4& parent, int depth, Append append) {
     if (depth > kDeepestNode) throw std::runtime_error("has nodes more than 1000 deep, or in a circle");
     const json& node = file_.At("nodes", index);
     const json* visibility = GltfFile::Extension(node, "KHR_node_visibility");
     if (append != &GltfReader::AppendCamera && visibility != nullptr && !visibility->value("visible", true)) return;
-    const glm::dmat4 transform = parent * TransformOf(node);
-    (this->*append)(node, transform);
-    for (const json& child : GltfFile::Child(node, "children"))
-      ReadNode(child.get<std::size_t>(), transform, depth + 1, append);
+    glm::dmat4 transform(1);
+    const auto children = ReadItem("nodes", index, [&] {
+      transform = transforms_[index] = parent * TransformOf(node);
+      CheckFinite(transform);
+      (this->*append)(node, transform);
+      return GltfFile::Indices(node, "children");
+    });
+    for (const std::size_t child : children) ReadNode(child, transform, depth + 1, append);
+  }
+
+  static void CheckFinite(const glm::dmat4& transform) {
+    for (int i = 0; i < 16; ++i) {
+      if (!(std::abs(transform[i / 4][i % 4]) <= std::numeric_limits<float>::max()))
+        throw std::runtime_error("its transform is not finite, or beyond 3.4e38");
+    }
   }
 
   void AppendCamera(const json& node, const glm::dmat4& transform) {
@@ -241,24 +337,41 @@ class GltfReader {
     if (import_.cameras.size() > kMostInstances) throw std::runtime_error("has more cameras than are read");
   }
 
+  static bool IsSkinned(const json& mesh) {
+    const json& primitives = GltfFile::Child(mesh, "primitives");
+    return std::any_of(primitives.begin(), primitives.end(),
+                       [](const json& p) { return GltfFile::Child(p, "attributes").contains("JOINTS_0"); });
+  }
+
+  static bool Morphs(const json& node, const json& mesh) {
+    const json &weights = GltfFile::Child(node.contains("weights") ? node : mesh, "weights"),
+               &primitives = GltfFile::Child(mesh, "primitives");
+    return std::any_of(weights.begin(), weights.end(), [](const json& w) { return w != 0.0; }) &&
+           std::any_of(primitives.begin(), primitives.end(), [](const json& p) { return p.contains("targets"); });
+  }
+
   void AppendInstances(const json& node, const glm::dmat4& transform) {
     if (!node.contains("mesh")) return;
     const std::size_t mesh = GltfFile::Index(node, "mesh");
-    if (mesh >= meshes_.size())
-      throw std::runtime_error("names meshes[" + std::to_string(mesh) + "], which does not exist");
+    if (Morphs(node, file_.At("meshes", mesh))) Warn("has morph targets: the meshes are rendered without them");
     const json* instancing = GltfFile::Extension(node, "EXT_mesh_gpu_instancing");
-    if (instancing == nullptr) {
-      instances_.push_back({transform, mesh});
+    if (node.contains("skin") && IsSkinned(file_.At("meshes", mesh))) {  // its node's transform does not count
+      instances_.push_back({glm::dmat4(1), {mesh, GltfFile::Index(node, "skin")}});
+    } else if (instancing == nullptr) {
+      instances_.push_back({transform, {mesh, {}}});
     } else {
       const json& attributes = GltfFile::Child(*instancing, "attributes");
       std::map<std::string, GltfTable> tables;
+      std::optional<std::size_t> count;
       for (const auto& [name, columns] : {std::pair{"TRANSLATION", 3u}, {"ROTATION", 4u}, {"SCALE", 3u}}) {
         if (!attributes.contains(name)) continue;
-        tables[name] = file_.ReadTable(GltfFile::Index(attributes, name));
-        if (tables[name].columns != columns || tables[name].count != tables.begin()->second.count)
-          throw std::runtime_error(std::string("EXT_mesh_gpu_instancing: ") + name + " does not fit");
+        const GltfTable& table = tables[name] = file_.ReadTable(GltfFile::Index(attributes, name));
+        if (table.columns != columns || table.count != count.value_or(table.count))
+          throw std::runtime_error(std::string("EXT_mesh_gpu_instancing: ") + name +
+                                   " is of another type or count than it must be");
+        count = table.count;
       }
-      for (std::size_t i = 0; !tables.empty() && i < tables.begin()->second.count; ++i) {
+      for (std::size_t i = 0; i < count.value_or(0); ++i) {
         const auto row = [&](const char* name, const glm::dvec4& otherwise) {
           const auto at = tables.find(name);
           if (at == tables.end()) return otherwise;
@@ -269,7 +382,8 @@ class GltfReader {
         const glm::dvec4 q = row("ROTATION", {0, 0, 0, 1});
         instances_.push_back(
             {transform * FromTrs(row("TRANSLATION", glm::dvec4(0)), {q.w, q.x, q.y, q.z}, row("SCALE", glm::dvec4(1))),
-             mesh});
+             {mesh, {}}});
+        CheckFinite(instances_.back().transform);
         if (instances_.size() > kMostInstances) break;
       }
     }
@@ -282,14 +396,13 @@ class GltfReader {
     const json& document = file_.document();
     if (document.contains("scene") || !GltfFile::Child(document, "scenes").empty()) {
       const json& scene = file_.At("scenes", document.contains("scene") ? GltfFile::Index(document, "scene") : 0);
-      return GltfFile::Child(scene, "nodes").empty() ? std::vector<std::size_t>{}
-                                                     : scene["nodes"].get<std::vector<std::size_t>>();
+      return GltfFile::Indices(scene, "nodes");
     }
     const json& nodes = GltfFile::Child(document, "nodes");
     std::vector<bool> is_child(nodes.size());
     for (const json& node : nodes) {
-      for (const json& child : GltfFile::Child(node, "children")) {
-        if (child.get<std::size_t>() < is_child.size()) is_child[child.get<std::size_t>()] = true;
+      for (const std::size_t child : GltfFile::Indices(node, "children")) {
+        if (child < is_child.size()) is_child[child] = true;
       }
     }
     std::vector<std::size_t> roots;
@@ -299,8 +412,7 @@ class GltfReader {
     return roots;
   }
 
-  void ReadNodes() {
-    for (const std::size_t root : Roots()) ReadNode(root, glm::dmat4(1), 0, &GltfReader::AppendInstances);
+  void AppendNodes() {
     std::vector<glm::dvec3> places;
     for (const Instance& instance : instances_) places.emplace_back(instance.transform[3]);
     constexpr double kFar = 1e4;
@@ -315,7 +427,8 @@ class GltfReader {
   GltfFile file_;
   MeshImport& import_;
   GltfMaterials materials_;
-  std::vector<std::vector<unsigned>> meshes_;  // by the file's mesh: of the scene's
+  std::map<MeshKey, std::vector<unsigned>> meshes_;  // of the scene's
+  std::map<std::size_t, glm::dmat4> transforms_;     // of nodes
   std::vector<Instance> instances_;
 };
 
@@ -328,9 +441,7 @@ void ReadBy(void (GltfReader::*read)(), MeshFiles& files, MeshImport& import) {
   } catch (const Unsupported& error) {
     fail(error.what());
   } catch (const json::exception& error) {
-    const std::string what = error.what();
-    fail("cannot be read: is not glTF as its schema has it: " +
-         what.substr(std::min(what.find("] ") + 2, what.size())));
+    fail("cannot be read: is not glTF as its schema has it: " + TextOf(error));
   } catch (const std::exception& error) {
     fail(std::string("cannot be read: ") + error.what());
   }
@@ -338,10 +449,7 @@ void ReadBy(void (GltfReader::*read)(), MeshFiles& files, MeshImport& import) {
 
 }  // namespace
 
-void ReadGltf(MeshFiles& files, MeshImport& import) {
-  ReadBy(&GltfReader::Read, files, import);
-  if (import.problem.empty() && import.scene.meshes.empty()) import.problem = "has no triangles";
-}
+void ReadGltf(MeshFiles& files, MeshImport& import) { ReadBy(&GltfReader::Read, files, import); }
 
 void ReadGltfCameras(MeshFiles& files, MeshImport& import) { ReadBy(&GltfReader::ReadCameras, files, import); }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -52,7 +53,7 @@ DecodedImage DecodeTga(Bytes file, bool with_alpha) {
                      std::vector<std::uint8_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3),
                      {}};
   const std::size_t pixels = image.rgb.size() / 3;
-  const bool has_alpha = with_alpha && entry == 4 && type != 3;
+  const bool has_alpha = with_alpha && entry == 4 && type != 3 && (palette || (file[17] & 15) != 0);
   if (has_alpha) image.alpha.resize(pixels);
   const auto need = [&](std::size_t from, std::size_t count) {
     if (from > file.size() || count > file.size() - from) throw std::runtime_error("truncated TGA");
@@ -106,7 +107,36 @@ std::vector<std::uint8_t> WithoutProfile(Bytes png) {
   return out;
 }
 
+// The content of a PNG's first chunk of a type; empty: it has none.
+Bytes PngChunk(Bytes png, std::string_view type) {
+  for (std::size_t at = kPngSignature.size(); at + 12 <= png.size();) {
+    const std::size_t length = BigEndian32(png.subspan(at));
+    if (length > png.size() - at - 12) break;
+    if (AsChars(png.subspan(at + 4, 4)) == type) return png.subspan(at + 8, length);
+    at += length + 12;
+  }
+  return {};
+}
+
+// Where a grey PNG names one grey as transparent, which OpenCV ignores, the alpha of its pixels.
+cv::Mat AlphaOfGreyKey(Bytes png, const cv::Mat& grey) {
+  const Bytes header = PngChunk(png, "IHDR"), key = PngChunk(png, "tRNS");
+  if (grey.empty() || header.size() < 13 || header[9] != 0 || key.size() < 2 || grey.channels() != 1) return {};
+  const int bits = header[8], value = key[0] << 8 | key[1];
+  return grey != (bits < 8 ? value * 255 / ((1 << bits) - 1) : value);
+}
+
 }  // namespace
+
+std::string StandInProblem(Bytes bytes) {
+  const std::string_view text = AsChars(bytes.first(std::min<std::size_t>(bytes.size(), 200)));
+  if (text.starts_with("version https://git-lfs"))
+    return "is a pointer of Git LFS, not the file itself: fetch it with 'git lfs pull'";
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string_view::npos && (text.substr(first).starts_with("<!") || text.substr(first).starts_with("<h")))
+    return "is a web page (HTML), not the file itself: download it again";
+  return "";
+}
 
 cv::Mat DecodeMatrix(Bytes bytes, int flags) {
   cv::Mat picture;
@@ -122,8 +152,20 @@ cv::Mat DecodeMatrix(Bytes bytes, int flags) {
 
 namespace {
 
+// A Radiance picture, whose values are linear, in codes of sRGB.
+cv::Mat CodedHdr(Bytes bytes) {
+  cv::Mat picture = DecodeMatrix(bytes, cv::IMREAD_COLOR | cv::IMREAD_ANYDEPTH), coded;
+  picture.forEach<cv::Vec3f>([](cv::Vec3f& color, const int*) {
+    for (float& c : color.val) c = 255 * (c > 0.0031308f ? 1.055f * std::pow(c, 1 / 2.4f) - 0.055f : 12.92f * c);
+  });
+  picture.convertTo(coded, CV_8U);
+  return coded;
+}
+
 DecodedImage DecodeByOpenCv(Bytes bytes, bool with_alpha) {
-  const cv::Mat bgr = DecodeMatrix(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION),
+  const cv::Mat bgr = AsChars(bytes).starts_with("#?")
+                          ? CodedHdr(bytes)
+                          : DecodeMatrix(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION),
                 all = with_alpha ? DecodeMatrix(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
   DecodedImage image{bgr.cols, bgr.rows, std::vector<std::uint8_t>(bgr.total() * 3), {}};
   if (all.channels() == 4 && all.size() == bgr.size() && (all.depth() == CV_8U || all.depth() == CV_16U)) {
@@ -132,6 +174,8 @@ DecodedImage DecodeByOpenCv(Bytes bytes, bool with_alpha) {
     alpha.convertTo(alpha, CV_8U, all.depth() == CV_16U ? 1.0 / 257.0 : 1.0);
     image.alpha.assign(alpha.begin<std::uint8_t>(), alpha.end<std::uint8_t>());
   }
+  if (const cv::Mat alpha = AlphaOfGreyKey(bytes, all); alpha.size() == bgr.size())
+    image.alpha.assign(alpha.begin<std::uint8_t>(), alpha.end<std::uint8_t>());
   cv::cvtColor(bgr, cv::Mat(bgr.size(), CV_8UC3, image.rgb.data()), cv::COLOR_BGR2RGB);
   return image;
 }
@@ -140,7 +184,8 @@ DecodedImage DecodeByOpenCv(Bytes bytes, bool with_alpha) {
 
 DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
   if (bytes.empty()) throw std::runtime_error("the file is empty");
-  for (const std::string& problem : {limits::PictureProblem(bytes), limits::PictureEndProblem(bytes)}) {
+  for (const std::string& problem :
+       {StandInProblem(bytes), limits::PictureProblem(bytes), limits::PictureEndProblem(bytes)}) {
     if (!problem.empty()) throw std::runtime_error(problem);
   }
   if (bytes.size() >= kPngSignature.size() && std::equal(kPngSignature.begin(), kPngSignature.end(), bytes.begin())) {
@@ -158,7 +203,7 @@ void SetAlpha(const DecodedImage& mask, DecodedImage& image) {
     return cv::Mat(mask.height, mask.width, type, const_cast<std::uint8_t*>(bytes.data()));
   };
   cv::Mat alpha;
-  if (mask.alpha.empty()) {
+  if (std::ranges::all_of(mask.alpha, [](std::uint8_t a) { return a == 255; })) {
     cv::cvtColor(view(mask.rgb, CV_8UC3), alpha, cv::COLOR_RGB2GRAY);
   } else {
     alpha = view(mask.alpha, CV_8UC1);

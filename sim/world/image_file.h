@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace cv {
@@ -23,7 +24,10 @@ struct DecodedImage {
 // problem, without a file name.
 DecodedImage DecodeImage(std::span<const std::uint8_t> bytes, bool with_alpha = false);
 
-// Alpha of `image`: the mask's own, or its brightness where it has none; of the image's size.
+// What stands in the place of a file that was not fetched, and the remedy; empty: nothing of the kind.
+std::string StandInProblem(std::span<const std::uint8_t> bytes);
+
+// Alpha of `image`: the mask's own, or its brightness where that is opaque; of the image's size.
 void SetAlpha(const DecodedImage& mask, DecodedImage& image);
 
 // OpenCV's decoding, with its flags IMREAD_...; without prior checks. Throws as DecodeImage.

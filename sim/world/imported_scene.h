@@ -24,7 +24,6 @@ struct UvChoice {
   unsigned channel = 0;
   glm::dmat3x2 transform{1, 0, 0, 1, 0, 0};                       // columns: of u, of v, and of 1
   std::array<UvWrap, 2> wrap = {UvWrap::repeat, UvWrap::repeat};  // along u and v
-  bool IsSamePlace(const UvChoice& other) const { return channel == other.channel && transform == other.transform; }
 };
 
 struct ImportedMap {

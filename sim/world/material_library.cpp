@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cstdlib>
-#include <vector>
 
 #include "sim/world/texture_file.h"
 #include "tools/base/text.h"
@@ -18,6 +17,17 @@ std::string_view Trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kBlanks);
   if (first == std::string_view::npos) return {};
   return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+}
+
+// What comes before a comment: '#' between blanks, since names like "Material #25" have one, too.
+std::string_view WithoutComment(std::string_view statement) {
+  for (std::size_t at = statement.find('#'); at != std::string_view::npos; at = statement.find('#', at + 1)) {
+    const bool is_last = at + 1 == statement.size();
+    if (at > 0 && Trimmed(statement.substr(at - 1, 1)).empty() &&
+        (is_last || Trimmed(statement.substr(at + 1, 1)).empty()))
+      return Trimmed(statement.substr(0, at));
+  }
+  return statement;
 }
 
 // One to three numbers; of those that are left out `otherwise`.
@@ -39,7 +49,7 @@ ImportedMap ReadMap(std::string_view rest) {
   std::array<double, 3> scale = {1, 1, 1}, offset = {0, 0, 0};
   while (rest.starts_with('-')) {
     std::string_view after = rest;
-    const std::string_view option = NextWord(after);
+    const std::string option = Lower(std::string(NextWord(after)));
     if (after.empty()) break;  // a name that begins so
     if (option == "-s") {
       scale = UpToThree(after, 1);
@@ -51,12 +61,10 @@ ImportedMap ReadMap(std::string_view rest) {
       NextWord(after), NextWord(after);  // base and gain
     } else if (option == "-clamp") {
       map.uv.wrap.fill(NextWord(after) == "on" ? UvWrap::clamp : UvWrap::repeat);
-    } else if (option == "-blendu" || option == "-blendv" || option == "-bm" || option == "-boost" ||
-               option == "-imfchan" || option == "-texres" || option == "-type" || option == "-cc") {
+    } else {  // of one word
       NextWord(after);
-    } else {
-      break;
     }
+    if (after.empty()) break;
     rest = after;
   }
   if (rest.size() > 1 && rest.front() == '"' && rest.back() == '"') rest = rest.substr(1, rest.size() - 2);
@@ -79,15 +87,14 @@ void ForEachStatement(std::string_view text,
   }
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view statement = text.substr(0, end);
+    std::string_view statement = Trimmed(text.substr(0, end));
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (statement.ends_with('\r')) statement.remove_suffix(1);
-    if (statement.ends_with('\\') && !text.empty()) {
+    if (statement.ends_with('\\') && !text.empty() && !(joined.empty() && statement.starts_with('#'))) {
       joined += std::string(statement.substr(0, statement.size() - 1)) + ' ';
       continue;
     }
     if (!joined.empty()) statement = joined += statement;
-    std::string_view rest = Trimmed(statement);
+    std::string_view rest = WithoutComment(Trimmed(statement));
     if (!rest.empty() && rest[0] != '#') {
       const std::string_view word = NextWord(rest);
       call(word, rest, line);
@@ -113,22 +120,30 @@ std::optional<double> ToNumber(std::string_view text) {
   return error == std::errc() && end == all ? std::optional(value) : std::nullopt;
 }
 
-void ReadMaterialLibrary(std::string_view text, const std::string& folder,
-                         std::map<std::string, ImportedMaterial>& materials) {
+std::vector<std::string> ReadMaterialLibrary(std::string_view text, const std::string& folder,
+                                             std::map<std::string, ImportedMaterial>& materials) {
   ImportedMaterial* m = nullptr;
-  ForEachStatement(text, [&](std::string_view word, std::string_view rest, int) {
+  std::vector<std::string> left_out;
+  ForEachStatement(text, [&](std::string_view word, std::string_view rest, int line) {
     const std::string key = Lower(std::string(word));
+    const auto leave_out = [&] {
+      left_out.push_back("line " + std::to_string(line) + ": " + std::string(word) + " " + std::string(rest));
+    };
     const auto number = [&](double otherwise) {
       std::string_view words = rest;
-      return ToNumber(NextWord(words)).value_or(otherwise);
+      const auto read = ToNumber(NextWord(words));
+      if (!read) leave_out();
+      return read.value_or(otherwise);
     };
     const auto color = [&](auto& value) {
       std::string_view words = rest;
-      const auto r = ToNumber(NextWord(words)), g = ToNumber(NextWord(words)), b = ToNumber(NextWord(words));
-      if (!r) return;
+      const auto r = ToNumber(NextWord(words));
+      const bool is_grey = words.empty();
+      const auto g = is_grey ? r : ToNumber(NextWord(words)), b = is_grey ? r : ToNumber(NextWord(words));
+      if (!r || !g || !b) return leave_out();
       value.r = static_cast<float>(*r);
-      value.g = static_cast<float>(g && b ? *g : *r);
-      value.b = static_cast<float>(g && b ? *b : *r);
+      value.g = static_cast<float>(*g);
+      value.b = static_cast<float>(*b);
     };
     if (key == "newmtl") {
       m = &materials.insert_or_assign(std::string(rest), ImportedMaterial{std::string(rest), folder}).first->second;
@@ -137,8 +152,10 @@ void ReadMaterialLibrary(std::string_view text, const std::string& folder,
     if (m == nullptr) return;
     if (key == "kd") color(m->base_color);
     if (key == "ke") m->emission = glm::vec3(0), color(m->emission);
-    if (key == "d")
-      m->opacity = static_cast<float>(ToNumber(rest.substr(rest.starts_with("-halo") ? 5 : 0)).value_or(number(1)));
+    if (key == "d") {
+      if (rest.starts_with("-halo")) rest.remove_prefix(5);
+      m->opacity = static_cast<float>(number(1));
+    }
     if (key == "tr") {  // MeshLab writes 1 for what is opaque
       const double transparency = number(0);
       if (transparency > 0 && transparency < 1) m->opacity = static_cast<float>(1 - transparency);
@@ -151,6 +168,7 @@ void ReadMaterialLibrary(std::string_view text, const std::string& folder,
     if (key == "bump" || key == "map_bump") m->has_bumps = 1;
     if (key == "norm") m->normal_map = ReadMap(rest);
   });
+  return left_out;
 }
 
 }  // namespace sim

@@ -121,10 +121,20 @@ std::vector<std::array<unsigned, 3>> Triangulate(std::span<const glm::dvec3> cor
   return triangles;
 }
 
+void Box::Add(const glm::dvec3& position) { low = glm::min(low, position), high = glm::max(high, position); }
+
+void Box::Add(const Polygons& polygons, const PolygonPools& pools) {
+  for (const Corner& corner : polygons.corners) Add(pools.positions[static_cast<std::size_t>(corner[0])]);
+}
+
 glm::dvec3 OriginFor(std::span<const glm::dvec3> positions) {
-  if (positions.empty()) return glm::dvec3(0);
-  glm::dvec3 low = positions[0], high = low;
-  for (const glm::dvec3& x : positions) low = glm::min(low, x), high = glm::max(high, x);
+  Box box;
+  for (const glm::dvec3& x : positions) box.Add(x);
+  return OriginFor(box);
+}
+
+glm::dvec3 OriginFor(const Box& box) {
+  const auto& [low, high] = box;
   const glm::dvec3 far = glm::max(glm::abs(low), glm::abs(high)), middle = 0.5 * (low + high);
   const double largest = std::max({far.x, far.y, far.z});
   const bool is_fine = !(0x1p-24 * largest > 1e-6 * glm::length(high - low)) || !std::isfinite(largest);

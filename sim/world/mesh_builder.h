@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,7 +41,15 @@ ImportedNode NodeOfAll(const std::vector<ImportedMesh>& meshes);
 // Source: G. H. Meisters, "Polygons have ears", Am. Math. Monthly 82 (1975), in the plane of the polygon's area vector.
 std::vector<std::array<unsigned, 3>> Triangulate(std::span<const glm::dvec3> corners);
 
+// Box about positions, empty at first.
+struct Box {
+  glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-low};
+  void Add(const glm::dvec3& position);
+  void Add(const Polygons& polygons, const PolygonPools& pools);  // what they use
+};
+
 // Offset to subtract from coordinates too large for floats (UTM, for example): 0, or near their middle.
+glm::dvec3 OriginFor(const Box& box);
 glm::dvec3 OriginFor(std::span<const glm::dvec3> positions);
 
 }  // namespace sim

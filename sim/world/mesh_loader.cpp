@@ -75,7 +75,7 @@ class FileReader {
       for (const unsigned mesh : node.meshes) AppendMesh(from.meshes[mesh], world_from_node.back());
     }
     if (file_.loading.problems.size() == problems_before && file_.scene.meshes.size() == meshes_before)
-      file_.Problem("has no triangles");
+      file_.Problem("has no triangles" + why_none_);
   }
 
  private:
@@ -111,11 +111,15 @@ class FileReader {
     out.name = in.name.empty() ? "mesh " + std::to_string(file_.scene.meshes.size()) : in.name;
     const std::string label = "mesh '" + out.name + "': ";
     const glm::dmat3 linear(world_from_node);
-    const glm::dmat3 normal_transform = glm::transpose(glm::inverse(linear));
-    if (!(std::abs(glm::determinant(linear)) > 0))
-      return file_.Problem(label + "its node's transform is singular or not finite");
+    if (!std::isfinite(glm::determinant(linear))) return file_.Problem(label + "its node's transform is not finite");
+    why_none_ = ": its nodes have a scale of 0";
+    if (linear == glm::dmat3(0)) return;  // glTF 2.0, 3.5.3: it is hidden
 
     const bool mirrored = glm::determinant(linear) < 0;  // the front stays in front
+    // Cofactors: the inverse's transpose times the determinant, also where a scale of 0 makes the mesh flat.
+    const glm::dmat3 normal_transform =
+        (mirrored ? -1.0 : 1.0) * glm::dmat3(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
+                                             glm::cross(linear[0], linear[1]));
 
     out.positions.reserve(in.positions.size());
     for (const glm::vec3& v : in.positions) {
@@ -129,15 +133,12 @@ class FileReader {
     AppendNormals(in, normal_transform, label, out);
     if (!in.colors.empty()) {
       const auto linear_of = [&](float c) { return file_.is_gltf ? c : static_cast<float>(SrgbToLinear(c)); };
-      bool any_alpha = false;
       for (const glm::vec4& c : in.colors) {
         if (!IsFinite(glm::vec3(c))) {
           return file_.Problem(label + "the colour of vertex " + std::to_string(out.colors.size()) + " is not finite");
         }
         out.colors.emplace_back(linear_of(c.r), linear_of(c.g), linear_of(c.b));
-        any_alpha = any_alpha || c.a != in.colors[0].a;  // where a file has none, assimp adds one
       }
-      if (any_alpha) file_.Warn(label, "the alpha of its vertex colours is not used");
     }
     std::size_t degenerate = 0;
     out.triangles.reserve(in.triangles.size());
@@ -157,6 +158,7 @@ class FileReader {
       file_.Warn(label + std::to_string(degenerate) + " of " + std::to_string(in.triangles.size()) + " ",
                  "triangles without area are left out");
     }
+    why_none_ = ": all are without area";
     if (out.triangles.empty()) return;
     const bool is_moved = description_.position != glm::dvec3(0);  // what is coarse in the file stays so
     if ((is_moved && !CheckRounding(label, in.positions, "convert it to OBJ or PLY, which are read in double")) ||
@@ -165,6 +167,7 @@ class FileReader {
     const MeshMaterial& material = materials_->Material(in.material);
     out.material = material.index;
     AppendUvs(in, material.uv, label, out);
+    FoldColors(in, material.is_unlit, label, out);
     const bool has_picture = !file_.is_gltf &&
                              file_.scene.materials[static_cast<std::size_t>(out.material)].texture >= 0 &&
                              !out.uvs.empty();
@@ -173,7 +176,36 @@ class FileReader {
       file_.Warn(label, "a picture takes the place of vertex colours");
       out.colors.clear();
     }
+    const Material& used = file_.scene.materials[static_cast<std::size_t>(out.material)];
+    if (used.alpha_cutoff > 0)
+      file_.loading.cut_outs.try_emplace(out.material, file_.path.string() + ": material '" + used.name + "': ");
     file_.scene.meshes.push_back(std::move(out));
+  }
+
+  // The copy of a mesh's material that is its own.
+  Material& OwnMaterial(Mesh& mesh) {
+    std::vector<Material>& all = file_.scene.materials;
+    all.push_back(Material(all[static_cast<std::size_t>(mesh.material)]));
+    mesh.material = static_cast<int>(all.size()) - 1;
+    return all.back();
+  }
+
+  // The part of vertex colours that renderers do not apply goes into the material: alpha, and the colour of what is
+  // unlit.
+  void FoldColors(const ImportedMesh& in, bool is_unlit, const std::string& label, Mesh& out) {
+    if (in.colors.empty()) return;
+    const bool cuts = file_.scene.materials[static_cast<std::size_t>(out.material)].alpha_cutoff > 0;
+    const float alpha = in.colors[0].a;
+    const bool same_alpha = std::ranges::all_of(in.colors, [&](const glm::vec4& c) { return c.a == alpha; });
+    if (cuts && !same_alpha) file_.Warn(label, "the alpha of its vertex colours is not used");
+    if (cuts && same_alpha && alpha != 1 && file_.is_gltf) OwnMaterial(out).alpha *= alpha;
+    if (!is_unlit) return;
+    glm::dvec3 mean(0);
+    for (const glm::vec3& c : out.colors) mean += glm::dvec3(c) / static_cast<double>(out.colors.size());
+    if (std::ranges::any_of(out.colors, [&](const glm::vec3& c) { return c != out.colors[0]; }))
+      file_.Warn(label, "vertex colours of an unlit material are their mean");
+    if (mean != glm::dvec3(1)) OwnMaterial(out).emission *= glm::vec3(mean);
+    out.colors.clear();
   }
 
   // Coordinates are floats, which are coarse far from the origin. Warns when the rounding is 1e-5 of the mesh's size,
@@ -222,10 +254,8 @@ class FileReader {
     if (!has(set)) {
       const std::string& name = file_.scene.textures[static_cast<std::size_t>(texture)].name();
       file_.Warn(label + "no texture coordinates for texture " + name + "; ", "the base colour is used");
-      Material plain = material;
+      Material& plain = OwnMaterial(out);
       plain.texture = plain.emission_texture = plain.normal_map = plain.gloss_texture = -1;
-      out.material = static_cast<int>(file_.scene.materials.size());
-      file_.scene.materials.push_back(std::move(plain));
       return;
     }
     for (const glm::vec2& uv : in.uvs[set]) {
@@ -249,6 +279,7 @@ class FileReader {
   const MeshDescription& description_;
   glm::dmat4 world_from_file_{1.0};
   std::optional<MeshMaterialReader> materials_;
+  std::string why_none_;  // of triangles
 };
 
 }  // namespace

@@ -33,8 +33,7 @@ class WarningList {
 // A texture of the scene that is still to be decoded.
 struct PictureJob {
   int texture;                    // in Scene::textures
-  std::function<Texture()> load;  // throws std::exception
-  std::string problem, warning;   // how its problem or warning begins
+  std::function<Texture()> load;  // throws std::exception with its file
 };
 
 // State shared by all files of a world.
@@ -47,9 +46,10 @@ struct WorldLoading {
   std::vector<std::string> problems{};
   WarningList warnings{};
   std::vector<PictureJob> pictures{};
+  std::map<int, std::string> cut_outs{};  // materials with alpha, and how a warning begins; empty: it is checked
 };
 
-// Decodes the pictures; parallel in the caller's task arena.
+// Decodes the pictures, and warns of cut-outs that leave nothing; parallel in the caller's task arena.
 void LoadPictures(WorldLoading& loading);
 
 // Appends the file's meshes (with the transforms of its nodes and of `description`), and the materials and textures

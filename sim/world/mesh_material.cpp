@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vector_relational.hpp>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -30,6 +32,21 @@ DecodedImage Decode(const ImportedPicture& picture, bool with_alpha) {
     if (with_alpha) image.alpha.push_back(bgra[3]);
   }
   return image;
+}
+
+// The value of `call`, whose exceptions begin with `problem`.
+template <class Call>
+auto WithProblem(const std::string& problem, const Call& call) try {
+  return call();
+} catch (const std::exception& error) {
+  throw std::runtime_error(problem + error.what());
+}
+
+// The largest alpha of a material's picture.
+float MostAlpha(const Scene& scene, const Material& material) {
+  if (material.texture < 0) return 1;
+  const std::span<const std::uint8_t> alpha = scene.textures[static_cast<std::size_t>(material.texture)].alpha();
+  return alpha.empty() ? 1 : static_cast<float>(*std::ranges::max_element(alpha)) / 255.0f;
 }
 
 }  // namespace
@@ -64,6 +81,7 @@ MeshMaterial MeshMaterialReader::Read(const ImportedMaterial& in) {
     material.texture = ReadTexture(in, {in.opacity_map, "opacity ", Content::color, true, mask}, uvs);
   if (emission.r > 0 || emission.g > 0 || emission.b > 0) {
     material.emission_texture = ReadTexture(in, {in.emission_map, "emission "}, uvs);
+    if (material.emission_texture < 0 && !in.emission_map.picture.empty()) material.emission = glm::vec3(0);
     if (file_.extension == ".ac") material.emission_texture = material.texture;  // AC3D: it applies to all light
   }
   if (!file_.is_gltf && material.texture >= 0 && material.base_color == glm::vec3(0))
@@ -83,6 +101,7 @@ MeshMaterial MeshMaterialReader::Read(const ImportedMaterial& in) {
     material.normal_map = material.gloss_texture = -1;
   }
   MeshMaterial result;
+  result.is_unlit = in.unlit != 0;
   result.index = static_cast<int>(file_.scene.materials.size());
   if (!uvs.empty()) result.uv = uvs.front();
   file_.scene.materials.push_back(std::move(material));
@@ -105,13 +124,30 @@ void MeshMaterialReader::ReadAlpha(const ImportedMaterial& in, sim::Material& ma
   }
 }
 
+// Whether two choices look up the same on all meshes of a material: sets may be equal, and wrapping not used.
+bool MeshMaterialReader::IsSamePlace(const ImportedMaterial& in, const UvChoice& a, const UvChoice& b) const {
+  const auto& meshes = meshes_of_[static_cast<std::size_t>(&in - from_.materials.data())];
+  const auto set = [](const ImportedMesh& mesh, const UvChoice& choice) {
+    return choice.channel < mesh.uvs.size() ? std::span<const glm::vec2>(mesh.uvs[choice.channel])
+                                            : std::span<const glm::vec2>();
+  };
+  const auto is_inside = [&](const glm::vec2& uv) {
+    const glm::dvec2 x = a.transform * glm::dvec3(uv.x, 1.0 - static_cast<double>(uv.y), 1.0);
+    return glm::all(glm::greaterThanEqual(x, glm::dvec2(0))) && glm::all(glm::lessThanEqual(x, glm::dvec2(1)));
+  };
+  return a.transform == b.transform && std::ranges::all_of(meshes, [&](const ImportedMesh* mesh) {
+           return (a.channel == b.channel || std::ranges::equal(set(*mesh, a), set(*mesh, b))) &&
+                  (a.wrap == b.wrap || std::ranges::all_of(set(*mesh, a), is_inside));
+         });
+}
+
 // The picture of one use, or -1. Pictures of a material share one set of texture coordinates: one that needs another is
 // left out.
 int MeshMaterialReader::ReadTexture(const ImportedMaterial& in, const Use& use, std::vector<UvChoice>& uvs) {
   if (use.map.picture.empty()) return -1;
-  if (!uvs.empty() && !uvs.front().IsSamePlace(use.map.uv)) {
+  if (!uvs.empty() && !IsSamePlace(in, uvs.front(), use.map.uv)) {
     file_.Warn("material '" + in.name + "': the " + use.what + "texture " + use.map.picture + " ",
-               "has other texture coordinates than the material's first; it is left out");
+               "has other texture coordinates or wrapping than the material's first; it is left out");
     return -1;
   }
   uvs.push_back(use.map.uv);
@@ -137,11 +173,15 @@ MeshMaterialReader::Source MeshMaterialReader::Find(const ImportedMaterial& in, 
     file_.Warn(who + "'" + map.picture + "': ", "a texture that is not there is grey");
     return [] { return ImportedPicture{1, 1, {128, 128, 128, 255}}; };
   }
+  if (!found.problem.empty()) {
+    const bool is_far = map.picture.find("://") != std::string::npos && !map.picture.starts_with("file");
+    file_.loading.problems.push_back(problem + (is_far ? "nothing is fetched from the net" : found.problem));
+    return {};
+  }
   if (found.is_elsewhere)
     file_.Warn(who + found.file.string() + " for '" + map.picture + "': ",
                "a texture is taken from where one of its name lies");
   return [found] {
-    if (!found.problem.empty()) throw std::runtime_error(found.problem);
     if (!fs::is_regular_file(found.file)) throw std::runtime_error("not a file");
     const std::optional<std::string> bytes = base::ReadFile(found.file);
     if (!bytes) throw std::runtime_error("cannot be opened");
@@ -159,29 +199,28 @@ int MeshMaterialReader::TextureIndex(const ImportedMaterial& in, const Use& use)
   const std::string mask_of = use.mask == nullptr ? "" : " * " + in.folder + "/" + use.mask->picture;
   const auto [entry, is_new] = file_.loading.textures.try_emplace(file.string() + kind + mask_of, -1);
   if (!is_new) return entry->second;  // a bad one has been reported already
-  std::string problem;
+  std::string problem, mask_problem;
   const Source picture = Find(in, use.map, found, problem);
-  if (!picture) return -1;
   const bool is_mask = use.mask == &use.map;  // only the picture of its opacity
   const bool has_mask = use.mask != nullptr && (is_mask || use.mask->picture != name);
-  const Source mask = has_mask ? Find(in, *use.mask, FileOf(in, *use.mask), problem) : Source();
-  if (has_mask && !mask) return -1;
+  const Source mask = has_mask ? Find(in, *use.mask, FileOf(in, *use.mask), mask_problem) : Source();
+  if (!picture || (has_mask && !mask)) return -1;
   const auto load = [=, content = use.content, with_alpha = use.with_alpha, folders = file_.loading.cache_folders] {
-    std::vector<ImportedPicture> from = {picture()};
-    if (mask) from.push_back(mask());
+    std::vector<ImportedPicture> from = {WithProblem(problem, picture)};
+    if (mask) from.push_back(WithProblem(mask_problem, mask));
     const auto made_of = static_cast<std::uint64_t>(content) * 4 + with_alpha * 2U + is_mask;
     return CachedTexture(file.string(), from, made_of, folders, [&] {
-      DecodedImage image = Decode(from[0], with_alpha);
-      if (mask) SetAlpha(Decode(from[1], true), image);
+      DecodedImage image = WithProblem(problem, [&] { return Decode(from[0], with_alpha); });
+      if (mask) SetAlpha(WithProblem(mask_problem, [&] { return Decode(from[1], true); }), image);
       if (is_mask) std::ranges::fill(image.rgb, std::uint8_t{255});
       if (std::ranges::none_of(image.alpha, [](std::uint8_t a) { return a < 255; })) image.alpha.clear();
-      return Texture(file.string(), image.width, image.height, image.rgb, image.alpha, content);
+      return WithProblem(
+          problem, [&] { return Texture(file.string(), image.width, image.height, image.rgb, image.alpha, content); });
     });
   };
   entry->second = static_cast<int>(file_.scene.textures.size());
   file_.scene.textures.emplace_back(file.string(), 1, 1, std::vector<std::uint8_t>(3));  // until it is loaded
-  file_.loading.pictures.push_back(
-      {entry->second, load, problem, file_.path.string() + ": material '" + in.name + "': "});
+  file_.loading.pictures.push_back({entry->second, load});
   return entry->second;
 }
 
@@ -194,18 +233,23 @@ void LoadPictures(WorldLoading& loading) {
         try {
           loading.scene.textures[static_cast<std::size_t>(jobs[i].texture)] = jobs[i].load();
         } catch (const std::exception& problem) {
-          problems[i] = jobs[i].problem + problem.what();
+          problems[i] = problem.what();
         }
       },
       tbb::simple_partitioner());
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    const std::span<const std::uint8_t> alpha =
-        loading.scene.textures[static_cast<std::size_t>(jobs[i].texture)].alpha();
     if (!problems[i].empty()) loading.problems.push_back(problems[i]);
-    if (!alpha.empty() && std::ranges::none_of(alpha, [](std::uint8_t a) { return a > 127; }))
-      loading.warnings.Add(jobs[i].warning, "the alpha of its picture is below 0.5 everywhere: it is not seen");
   }
   jobs.clear();
+  for (auto& [index, who] : loading.cut_outs) {
+    const Material& material = loading.scene.materials[static_cast<std::size_t>(index)];
+    if (!who.empty() && material.alpha * MostAlpha(loading.scene, material) < material.alpha_cutoff) {
+      std::ostringstream what;
+      what << "its alpha is below " << material.alpha_cutoff << " everywhere: it is not seen";
+      loading.warnings.Add(who, what.str());
+    }
+    who.clear();
+  }
 }
 
 }  // namespace sim

@@ -32,12 +32,15 @@ struct MeshFile {
 struct MeshMaterial {
   int index = -1;  // in Scene::materials
   UvChoice uv;
+  bool is_unlit = false;  // its emission is glTF's base colour
 };
 
 class MeshMaterialReader {
  public:
   MeshMaterialReader(const MeshFile& file, const ImportedScene& from)
-      : file_(file), from_(from), materials_(from.materials.size()) {}
+      : file_(file), from_(from), materials_(from.materials.size()), meshes_of_(from.materials.size()) {
+    for (const ImportedMesh& mesh : from.meshes) meshes_of_[mesh.material].push_back(&mesh);
+  }
 
   // Adds the file's material to the scene at its first use.
   const MeshMaterial& Material(unsigned index);
@@ -53,6 +56,7 @@ class MeshMaterialReader {
   };
 
   MeshMaterial Read(const ImportedMaterial& in);
+  bool IsSamePlace(const ImportedMaterial& in, const UvChoice& a, const UvChoice& b) const;
   void ReadAlpha(const ImportedMaterial& in, sim::Material& material);
   int ReadTexture(const ImportedMaterial& in, const Use& use, std::vector<UvChoice>& uvs);
   int TextureIndex(const ImportedMaterial& in, const Use& use);
@@ -64,7 +68,8 @@ class MeshMaterialReader {
 
   const MeshFile& file_;
   const ImportedScene& from_;
-  std::vector<MeshMaterial> materials_;  // by the file's index; index -1: not used yet
+  std::vector<MeshMaterial> materials_;                      // by the file's index; index -1: not used yet
+  std::vector<std::vector<const ImportedMesh*>> meshes_of_;  // the same
 };
 
 }  // namespace sim

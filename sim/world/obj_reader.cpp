@@ -1,4 +1,5 @@
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <string_view>
@@ -74,8 +75,7 @@ class ObjReader {
       if (Numbers(rest, n) < 1) return Problem("a texture coordinate has a number");
       pools_.uvs.emplace_back(n[0], n[1]);
     } else if (word == "vn") {
-      if (Numbers(rest, n) < 3) return Problem("a normal has three coordinates");
-      pools_.normals.emplace_back(n[0], n[1], n[2]);
+      Normal(rest);
     } else if (word == "f" || word == "fo") {
       Face(rest);
     } else if (word == "usemtl") {
@@ -89,6 +89,16 @@ class ObjReader {
       return;
     }
     known_ = true;
+  }
+
+  // One that is not finite leads to flat normals.
+  void Normal(std::string_view rest) {
+    glm::vec3& normal = pools_.normals.emplace_back();
+    for (int i = 0; i < 3; ++i) {
+      const std::string_view word = NextWord(rest);
+      if (word.empty()) return Problem("a normal has three coordinates");
+      normal[i] = static_cast<float>(ToNumber(word).value_or(std::nan("")));
+    }
   }
 
   void Face(std::string_view rest) {
@@ -143,15 +153,23 @@ class ObjReader {
     const std::optional<std::string> text = found.problem.empty() ? files_.Read(found.file) : std::nullopt;
     if (!text) return false;
     if (found.is_elsewhere) import_.warnings.push_back("takes " + found.file.string() + " for " + std::string(name));
-    ReadMaterialLibrary(*text, found.file.parent_path().lexically_relative(folder.empty() ? "." : folder).string(),
-                        materials_);
+    const std::vector<std::string> left_out = ReadMaterialLibrary(
+        *text, found.file.parent_path().lexically_relative(folder.empty() ? "." : folder).string(), materials_);
+    if (!left_out.empty())
+      import_.warnings.push_back(
+          found.file.string() + ": " + std::to_string(left_out.size()) +
+          " × values that are not plain numbers (with a point) are left out (first: " + left_out[0] + ")");
     any_library_ = true;
     return true;
   }
 
   void Build() {
     if (!known_) return Fail("cannot be read: has no statement of an OBJ file (in ASCII or UTF-8)");
-    import_.origin = OriginFor(pools_.positions);
+    if (parts_.empty())
+      return Fail("has no triangles: points, lines and curves are not rendered; convert them to faces first");
+    Box used;
+    for (const Part& part : parts_) used.Add(part.polygons, pools_);
+    import_.origin = OriginFor(used);
     if (!pools_.colors.empty()) pools_.colors.resize(pools_.positions.size(), glm::vec4(1.0f));
     ScaleColors(pools_, import_.warnings);
     auto& [nodes, meshes, materials, pictures] = import_.scene;

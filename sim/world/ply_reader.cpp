@@ -66,6 +66,7 @@ class PlyReader {
 
   void Read() {
     ReadHeader();
+    RequireFaces();
     for (const Element& element : elements_) {  // vertices may come after faces
       if (element.name == "vertex") vertex_ = PlacesOf(element);
     }
@@ -112,13 +113,24 @@ class PlyReader {
           type = NextWord(line);
         }
         const Type& of = TypeOf(type);
-        elements_.back().properties.push_back({std::string(line), &of, count});
+        elements_.back().properties.push_back({Lower(std::string(line)), &of, count});
       } else if (word == "comment" || word == "obj_info") {
         if (Lower(std::string(NextWord(line))) == "texturefile") textures_.emplace_back(line);
       }
       ended = word == "end_header";
     }
     if (!ended || !known) throw std::runtime_error("its header breaks off, or names no format");
+  }
+
+  void RequireFaces() const {
+    const auto is = [](const Element& e, auto... names) { return e.count > 0 && ((e.name == names) || ...); };
+    if (std::ranges::any_of(elements_, [&](const Element& e) { return is(e, "face", "tristrips"); })) return;
+    const bool is_splats = std::ranges::any_of(elements_, [](const Element& e) {
+      return e.Find({"f_dc_0", "packed_position"}) >= 0;
+    });
+    throw std::runtime_error(
+        std::string(is_splats ? "it holds Gaussian splats" : "it is a point cloud, without faces") +
+        "; triangles are needed: make a mesh of it first");
   }
 
   double Value(const Type& type) {
@@ -187,8 +199,8 @@ class PlyReader {
     return {Places<3>({e.Find({"x"}), e.Find({"y"}), e.Find({"z"})}),
             Places<3>({e.Find({"nx", "normal_x"}), e.Find({"ny", "normal_y"}), e.Find({"nz", "normal_z"})}),
             ColorPlaces(e),
-            Places<2>({e.Find({"s", "u", "texture_u", "texture_s", "tu"}),
-                       e.Find({"t", "v", "texture_v", "texture_t", "tv"})})};
+            Places<2>({e.Find({"s", "u", "texture_u", "texture_s", "tu", "texcoord_u", "u0", "uv_0"}),
+                       e.Find({"t", "v", "texture_v", "texture_t", "tv", "texcoord_v", "v0", "uv_1"})})};
   }
 
   void ReadVertices(const Element& e) {
@@ -228,8 +240,8 @@ class PlyReader {
       const std::vector<double>& texture = number < 0 ? none : row[static_cast<std::size_t>(number)];
       if (color) AppendColor(e, *color, row);
       // Faces with and without coordinates of their own are parts, as are those of different textures.
-      Polygons& part =
-          parts_[{texture.empty() ? 0 : static_cast<int>(std::clamp(texture[0], 0.0, 1e6)), wedge >= 0 && !has_wedge}];
+      const int of = texture.empty() ? 0 : texture[0] >= 0 ? static_cast<int>(std::min(texture[0], 1e6)) : -1;
+      Polygons& part = parts_[{of, wedge >= 0 && !has_wedge}];
       part.sizes.push_back(static_cast<std::uint32_t>(vertices.size()));
       for (std::size_t i = 0; i < vertices.size(); ++i) {
         Corner& corner = part.corners.emplace_back(At(vertices[i]));
@@ -264,20 +276,35 @@ class PlyReader {
   }
 
   void Build() {
-    import_.origin = OriginFor(pools_.positions);
-    ScaleColors(pools_, import_.warnings);
-    auto& [nodes, meshes, materials, pictures] = import_.scene;
+    Box used;
     for (const auto& [key, part] : parts_) {
       if (const std::string problem = IndexProblem(part, pools_); !problem.empty()) throw std::runtime_error(problem);
+      used.Add(part, pools_);
+    }
+    import_.origin = OriginFor(used);
+    ScaleColors(pools_, import_.warnings);
+    auto& [nodes, meshes, materials, pictures] = import_.scene;
+    std::size_t without_uv = 0, without_texture = 0;
+    for (const auto& [key, part] : parts_) {
       ImportedMesh& mesh = meshes.emplace_back();
       const auto texture = static_cast<std::size_t>(key.first);
       mesh.material = static_cast<unsigned>(materials.size());
       ImportedMaterial& material =
           materials.emplace_back(ImportedMaterial{texture < textures_.size() ? textures_[texture] : ""});
-      if (!part.corners.empty() && part.corners[0][1] >= 0) material.color_map.picture = material.name;
+      const bool has_uv = !part.corners.empty() && part.corners[0][1] >= 0;
+      if (has_uv) material.color_map.picture = material.name;
+      if (!material.name.empty() && !has_uv) without_uv += part.sizes.size();
+      if (!textures_.empty() && texture >= textures_.size()) without_texture += part.sizes.size();
       AppendPolygons(part, pools_, import_.origin, mesh);
     }
     nodes.push_back(NodeOfAll(meshes));
+    if (without_uv > 0)
+      import_.warnings.push_back(
+          std::to_string(without_uv) + " of its faces have a picture (TextureFile) but no " +
+          "texture coordinates that are known (s t, u v, texture_u ..., texcoord): it is left out");
+    if (without_texture > 0)
+      import_.warnings.push_back(std::to_string(without_texture) + " of its faces name a picture (texnumber) that is " +
+                                 "not one of its " + std::to_string(textures_.size()) + ": they have none");
   }
 
   MeshImport& import_;

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kVersion = 1;  // of the file and of the computation; part of the file's name
+constexpr std::uint64_t kVersion = 2;  // of the file and of the computation; part of the file's name
 constexpr std::size_t kLeastTexels = std::size_t{1} << 18;  // smaller ones are decoded as fast as read
 
 // All of 4 bytes.

@@ -24,20 +24,22 @@ std::string Plain(std::string text) {
   return text.substr(0, last == std::string::npos ? 0 : last + 1);
 }
 
-// The file, or one beside it whose name differs in capitals only; of any kind: a picture of another format is accepted,
-// as in Quake's engines.
+// The file, or one whose path differs in capitals only; of any kind: a picture of another format is accepted, as in
+// Quake's engines.
 std::optional<fs::path> Existing(const fs::path& file, bool of_any_kind = false) {
   std::error_code error;
   if (fs::exists(file, error)) return file;
   const std::string wanted = Lower(file.filename().string()), stem = Lower(file.stem().string());
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+  const std::optional<fs::path> folder = file.has_parent_path() ? Existing(file.parent_path()) : fs::path();
+  if (!folder) return std::nullopt;
+  for (fs::directory_iterator entry(folder->empty() ? "." : *folder, error), end; !error && entry != end;
+       entry.increment(error)) {
     const fs::path& found = entry->path();
     const std::string extension = LowerExtension(found);
     const bool is_picture = std::ranges::count(kPictures, extension) > 0;
     if (Lower(found.filename().string()) == wanted ||
         (of_any_kind && is_picture && Lower(found.stem().string()) == stem))
-      return file.parent_path() / entry->path().filename();
+      return *folder / found.filename();
   }
   return std::nullopt;
 }
@@ -80,8 +82,7 @@ TextureFile FindTexture(const std::string& name, const fs::path& mesh, const std
     const bool has_drive = text.size() > 1 && text[1] == ':';
     for (const fs::path& base : bases) {
       const auto found = has_drive ? std::nullopt : Existing((base / text).lexically_normal());
-      if (found && IsAllowed(mesh, folders, *found))
-        return {*found, found->filename() != fs::path(text).filename(), ""};
+      if (found && IsAllowed(mesh, folders, *found)) return {*found, *found != (base / text).lexically_normal(), ""};
       is_outside = is_outside || found || has_drive || fs::path(text).is_absolute();
     }
   }

@@ -1,5 +1,8 @@
 // Gazebo worlds as scenarios: places against poses worked out by hand, in SDF's axes.
+#include "tools/bench/import/import.h"
+
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <glm/common.hpp>
@@ -184,7 +187,7 @@ TEST(ImportTest, BadInputIsNamedWithFileAndLine) {
   const std::string box = Visual("<box><size>1 1 1</size></box>");
   const std::string missing =
       ErrorOf(folder, World("<include><uri>model://nowhere</uri></include>\n" + Model("m", "a b", box)));
-  EXPECT_THAT(missing, HasSubstr("world.sdf:3: Unable to find uri[model://nowhere]"));
+  EXPECT_THAT(missing, HasSubstr("world.sdf:3: Unable to find uri[model://nowhere]; --models names folders"));
   EXPECT_THAT(missing, HasSubstr("world.sdf:4: Error reading element <pose>"));
   EXPECT_THAT(missing, testing::Not(HasSubstr("<world>")));
   EXPECT_THAT(ErrorOf(folder, "<sdf version='1.7'>\n<world name='w'>\n<model nam\n"),
@@ -196,6 +199,89 @@ TEST(ImportTest, BadInputIsNamedWithFileAndLine) {
   folder.Write("bad.obj", "f 1 2 3\n");
   EXPECT_THAT(ErrorOf(folder, World(Model("m", "0 0 0 0 0 0", Visual("<mesh><uri>bad.obj</uri></mesh>")))),
               HasSubstr("bad.obj"));
+}
+
+// Links without inertia, meshes beside the file and of the package that it is in.
+TEST(ImportTest, UrdfOfAPackage) {
+  const Folder folder;
+  folder.Write("pkg/meshes/t.obj", kTriangle);
+  folder.Write("pkg/urdf/t.obj", kTriangle);
+  const auto link = [](const std::string& name, const std::string& mesh) {
+    return "<link name='" + name + "'><visual><geometry><mesh filename='" + mesh + "'/></geometry></visual></link>";
+  };
+  const fs::path file = folder.Write(
+      "pkg/urdf/r.urdf", "<robot name='r'>" + link("a", "package://pkg/meshes/t.obj") + link("b", "t.obj") +
+                             "<joint name='j' type='revolute'><parent link='a'/><child link='b'/><axis "
+                             "xyz='0 0 1'/><limit lower='0' upper='1' effort='1' velocity='1'/></joint></robot>");
+  EXPECT_EQ(Imported(folder, file).scene.meshes.size(), 2u);
+}
+
+TEST(ImportTest, ModelConfigNamesTheVersion) {
+  const auto model = [](const std::string& size) {
+    return "<sdf version='1.5'>" + Model("m", "0 0 0 0 0 0", Visual("<box><size>" + size + "</size></box>")) + "</sdf>";
+  };
+  for (const char* from : {"thing", "thing/model.config"}) {
+    const Folder folder;
+    folder.Write("thing/old.sdf", model("1 1 1"));
+    folder.Write("thing/new.sdf", model("2 2 2"));
+    folder.Write("thing/model.config",
+                 "<model><name>t</name><sdf version='1.4'>old.sdf</sdf><sdf version='1.5'>new.sdf</sdf></model>");
+    Imported(folder, folder / from).ExpectBox("m/v", {-1, -1, -1}, {1, 1, 1});
+  }
+}
+
+TEST(ImportTest, MeshesOfASurveyAreMovedToTheOrigin) {
+  const Folder folder;
+  folder.Write("set/a.obj", "v 500000 4600000 0\nv 500001 4600000 0\nv 500000 4600001 1\nf 1 2 3\n");
+  folder.Write("set/b.obj", "v 500002 4600000 0\nv 500003 4600000 0\nv 500002 4600001 1\nf 1 2 3\n");
+  const Loaded world = Imported(folder, folder / "set");
+  EXPECT_LT(glm::length(world.scene.meshes.at(0).positions[0]), 2);
+  EXPECT_EQ(world.scene.meshes.at(1).positions[0] - world.scene.meshes[0].positions[0], glm::vec3(2, 0, 0));
+}
+
+TEST(ImportTest, WhatIsLeftOutIsSaid) {
+  const Folder folder;
+  const std::string box = Visual("<box><size>1 1 1</size></box>", "<material><emissive>0 1 0 1</emissive></material>");
+  std::string text = World("<light type='point' name='p'><light_on>false</light_on></light>" +
+                           Model("m", "0 0 0 0 0 0", box) + "<state world_name='w'/>");
+  text.insert(text.find("</sdf>"), "<world name='second'/>");
+  const ImportedWorld world = ReadSdf(folder.Write("world.sdf", text), {}, folder / "shapes");
+  EXPECT_EQ(world.lights.size(), 1u) << "the ambient one";
+  EXPECT_THAT(world.warnings, testing::UnorderedElementsAre(HasSubstr("worlds after the first"), HasSubstr("<state>"),
+                                                            HasSubstr("emission is not rendered")));
+}
+
+TEST(ImportTest, MaterialsOfScripts) {
+  const Folder folder;
+  const std::vector<fs::path> scripts = {
+      folder.Write("a.material",
+                   "/* material A { diffuse 1 0 0 } */ material A : B { }\nmaterial C: B { diffuse 0 0 1 }\n"
+                   "material B { texture_unit { texture b.png\nscale 2 2 } diffuse 0 1 0\nemissive 1 0 0 }\n")};
+  const auto a = FindOgreMaterial("A", scripts), c = FindOgreMaterial("C", scripts),
+             glow = FindOgreMaterial("Gazebo/TurquoiseGlow", scripts);
+  ASSERT_TRUE(a && c && glow);
+  EXPECT_EQ(*a->diffuse, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(a->texture, "b.png");
+  EXPECT_TRUE(a->is_scaled && a->is_emissive);
+  EXPECT_EQ(*c->diffuse, glm::dvec3(0, 0, 1));
+  EXPECT_EQ(*glow->diffuse, glm::dvec3(0, 1, 1));
+  EXPECT_TRUE(glow->is_emissive);
+}
+
+TEST(ImportTest, FilesThatAreNoneAreNamed) {
+  const Folder folder;
+  const auto problem = [&](const fs::path& from) -> std::string {
+    try {
+      Imported(folder, from);
+    } catch (const BadInput& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(problem(folder / "gone.sdf"), HasSubstr("gone.sdf: no such file"));
+  EXPECT_THAT(problem(folder.Write("mesh", kTriangle)), HasSubstr("has no extension"));
+  ASSERT_EQ(mkfifo((folder / "pipe.sdf").c_str(), 0600), 0);
+  EXPECT_THAT(problem(folder / "pipe.sdf"), HasSubstr("pipe.sdf: neither a file nor a folder"));
 }
 
 TEST(ImportTest, FolderOfMeshesIsOneWorld) {

@@ -24,6 +24,9 @@ struct ImportedWorld {
   std::set<std::string> planes;       // names of meshes that are ground rather than stand there
 };
 
+// The description that a folder's model.config names: the newest version that is read; empty: none.
+std::filesystem::path ModelOf(const std::filesystem::path& folder);
+
 // Visuals and lights of an SDF or URDF file at their initial poses; x, y, z of SDF are x, -z, y of W. Boxes and other
 // primitives are meshes of `shapes`, stretched. model:// and package:// are looked for in `folders`, too. Colours are
 // taken as sRGB. Throws std::runtime_error with all problems, "FILE:LINE: why".
@@ -32,10 +35,12 @@ ImportedWorld ReadSdf(const std::filesystem::path& file, const std::vector<std::
                       const std::filesystem::path& shapes);
 
 // The first pass of a material in scripts of OGRE 1.9 (files, or folders that hold *.material); none where no script
-// has it. Some of Gazebo's plain colours (Gazebo/Red) need no script.
+// has it. Gazebo's plain colours (Gazebo/Red) need no script.
 struct OgreMaterial {
-  std::optional<glm::dvec3> diffuse;  // sRGB-coded
-  std::string texture;                // a file name; empty: none
+  std::optional<glm::dvec3> diffuse{};  // sRGB-coded
+  std::string texture{};                // a file name; empty: none
+  std::string base{};                   // the material that it inherits from and that no script has; empty: none
+  bool is_emissive = false, is_scaled = false;
 };
 std::optional<OgreMaterial> FindOgreMaterial(const std::string& name,
                                              const std::vector<std::filesystem::path>& scripts);

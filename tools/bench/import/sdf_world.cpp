@@ -46,6 +46,8 @@ glm::dquat RawFromYUp(const fs::path& file) {
   return text.find("<up_axis>X_UP<") != std::string::npos ? glm::dquat(kHalf, 0, 0, -kHalf) : glm::dquat(1, 0, 0, 0);
 }
 
+constexpr char kModelsRemedy[] = "; --models names folders of models, fetched before";
+
 class Reader {
  public:
   Reader(const fs::path& file, const std::vector<fs::path>& folders, fs::path shapes)
@@ -69,8 +71,9 @@ class Reader {
     config.SetFindCallback([this](const std::string& uri) { return Find(uri, file_).string(); });
     sdf::Root root;
     console_bridge::noOutputHandler();  // invalid SDF is tried as URDF, whose reader prints its problems
-    Note(root.Load(file_.string(), config));
+    Note(urdf_.empty() ? root.Load(file_.string(), config) : root.LoadSdfString(urdf_, config));
     if (problems_.empty() && root.WorldCount() > 0) ReadWorld(*root.WorldByIndex(0));
+    if (root.WorldCount() > 1) warnings_.Add(file_.string() + ": ", "worlds after the first are left out");
     if (problems_.empty() && root.Model() != nullptr) ReadModel(*root.Model(), Pose::Zero, root.Model()->Name());
     if (!problems_.empty()) throw std::runtime_error(base::Join({problems_.begin(), problems_.end()}, "\n"));
     if (result_.world.meshes.empty()) throw std::runtime_error(file_.string() + ": has no visuals");
@@ -80,7 +83,7 @@ class Reader {
 
  private:
   // Checks for XML, of which libsdformat only reports that it cannot be read.
-  void RequireXml() const {
+  void RequireXml() {
     tinyxml2::XMLDocument xml;
     if (xml.LoadFile(file_.c_str()) != tinyxml2::XML_SUCCESS)
       throw std::runtime_error(
@@ -88,10 +91,34 @@ class Reader {
     const std::string name = xml.RootElement()->Name();
     if (name != "sdf" && name != "gazebo" && name != "robot")
       throw std::runtime_error(file_.string() + ": is neither SDF nor URDF: its element is <" + name + ">");
+    if (name == "robot") urdf_ = WithInertia(xml);
+  }
+
+  // Text of a URDF where each link has an inertia: libsdformat leaves out those without.
+  static std::string WithInertia(tinyxml2::XMLDocument& xml) {
+    for (auto* link = xml.RootElement()->FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
+      if (link->FirstChildElement("inertial") != nullptr || link->Attribute("name", "world") != nullptr) continue;
+      auto* const inertial = link->InsertNewChildElement("inertial");
+      inertial->InsertNewChildElement("mass")->SetAttribute("value", 1);
+      auto* const inertia = inertial->InsertNewChildElement("inertia");
+      for (const char* name : {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"})
+        inertia->SetAttribute(name, name[1] == name[2] ? 1 : 0);
+    }
+    tinyxml2::XMLPrinter printer;
+    xml.Print(&printer);
+    return printer.CStr();
+  }
+
+  // Of a URDF libsdformat gives "urdf file" instead of a file.
+  static bool IsFile(const fs::path& file) {
+    std::error_code error;
+    return fs::is_regular_file(file, error);
   }
 
   void Reject(const std::string& file, std::optional<int> line, const std::string& what) {
-    problems_.insert((file.empty() ? file_.string() : file) + (line ? ":" + std::to_string(*line) : "") + ": " + what);
+    const bool is_file = IsFile(file);
+    problems_.insert((is_file ? file : file_.string()) + (is_file && line ? ":" + std::to_string(*line) : "") + ": " +
+                     what);
   }
   // Notes all errors but those that repeat for an outer element, or the file, that it cannot be read either.
   void Note(const sdf::Errors& errors) {
@@ -99,7 +126,9 @@ class Reader {
     for (const sdf::Error& error : errors) {
       const std::string what = error.Message();
       const bool is_outer = what.starts_with("Error reading element") || what.starts_with("Unable to read file");
-      if (!(is_outer && repeats)) Reject(error.FilePath().value_or(""), error.LineNumber(), what);
+      const bool is_missing = what.starts_with("Unable to find uri");
+      if (!(is_outer && repeats))
+        Reject(error.FilePath().value_or(""), error.LineNumber(), what + (is_missing ? kModelsRemedy : ""));
       repeats = is_outer;
     }
   }
@@ -110,18 +139,34 @@ class Reader {
     const std::string name = scheme == std::string::npos ? uri : uri.substr(scheme + 3);
     std::error_code error;
     if (uri.starts_with("http") || name.empty()) return {};
-    const fs::path beside = (from.empty() ? file_ : from).parent_path() / name;
+    const fs::path beside = (IsFile(from) ? fs::absolute(from) : file_).parent_path() / name;
     if (!uri.starts_with("model:") && fs::exists(beside, error)) return beside;
     for (const fs::path& folder : folders_) {
       if (fs::exists(folder / name, error)) return (folder / name).lexically_normal();
     }
+    // A package that this file is in, at any depth.
+    for (fs::path up = file_.parent_path(); up.has_relative_path(); up = up.parent_path()) {
+      if (up.filename() == *fs::path(name).begin() && fs::exists(up.parent_path() / name, error))
+        return (up.parent_path() / name).lexically_normal();
+    }
     return {};
+  }
+  // Folder that textures may be read from. All files would be below the root.
+  void AddFolder(const fs::path& folder) {
+    if (folder.has_relative_path()) result_.world.folders.push_back(folder);
+  }
+  // Of MODEL/meshes/FILE the whole model, where it is one: no other folder that happens to be above.
+  void AddFoldersOf(const fs::path& mesh) {
+    const fs::path folder = mesh.parent_path(), model = folder.parent_path();
+    std::error_code error;
+    const bool is_model = model == file_.parent_path() || fs::exists(model / "model.config", error) ||
+                          fs::exists(model / "package.xml", error);
+    AddFolder(folder.filename() == "meshes" && is_model ? model : folder);
+    if (fs::is_directory(model / "materials", error)) AddFolder(model / "materials");
   }
   fs::path Require(const std::string& uri, const std::string& from, const sdf::ElementPtr& at) {
     const fs::path found = Find(uri, from);
-    if (found.empty())
-      Reject(at->FilePath(), at->LineNumber(),
-             uri + ": no such file; --models names folders of models, fetched before");
+    if (found.empty()) Reject(at->FilePath(), at->LineNumber(), uri + ": no such file" + kModelsRemedy);
     return found;
   }
 
@@ -144,6 +189,11 @@ class Reader {
     for (std::uint64_t i = 0; i < in.LightCount(); ++i) ReadLight(*in.LightByIndex(i), Pose::Zero);
     for (std::uint64_t i = 0; i < in.ActorCount(); ++i)
       warnings_.Add("'" + in.ActorByIndex(i)->Name() + "': ", "actors are left out");
+    for (const char* name : {"road", "population"}) {
+      if (in.Element()->HasElement(name)) warnings_.Add("", std::string("a <") + name + "> is left out");
+    }
+    if (in.Element()->HasElement("state"))
+      warnings_.Add("", "<state> is not applied: models are at their poses outside it");
   }
 
   // model: the outermost one that it belongs to.
@@ -159,6 +209,8 @@ class Reader {
   }
 
   void ReadLight(const sdf::Light& in, const Pose& parent) {
+    const sdf::ElementPtr element = in.Element();
+    if (element->HasElement("light_on") && !element->Get<bool>("light_on")) return;
     const Pose pose = Resolved(in, parent);
     const glm::dvec3 power = std::numbers::pi * in.Intensity() * Linear(in.Diffuse());
     const glm::dvec3 way = kYUp * Vector(pose.Rot().RotateVector(in.Direction())), place = kYUp * Vector(pose.Pos());
@@ -206,13 +258,12 @@ class Reader {
       const glm::dmat3 turned = glm::mat3_cast(turn);  // by a quarter or not: its squares swap the factors
       mesh.stretch = glm::transpose(glm::matrixCompMult(turned, turned)) * Vector(from->Scale());
       if (!from->Submesh().empty()) warnings_.Add(who, "a submesh is not picked out: the whole file is taken");
-      const fs::path folder = mesh.file.parent_path();  // MODEL/meshes
-      result_.world.folders.push_back(folder.filename() == "meshes" ? folder.parent_path() : folder);
+      AddFoldersOf(mesh.file);
     } else {
       return warnings_.Add(who, "a shape that is none of box, sphere, cylinder, plane and mesh is left out");
     }
     if (const sdf::Material* material = visual.Material()) ReadMaterial(*material, who, mesh);
-    if (!mesh.texture.empty()) result_.world.folders.push_back(mesh.texture.parent_path());
+    if (!mesh.texture.empty()) AddFolder(mesh.texture.parent_path());
     if (visual.Transparency() > 0) warnings_.Add(who, "transparency is not rendered: it is opaque");
     mesh.position = kYUp * Vector(pose.Pos());
     mesh.orientation = glm::normalize(kYUp * Quaternion(pose.Rot()) * turn);
@@ -220,6 +271,7 @@ class Reader {
   }
 
   void ReadMaterial(const sdf::Material& in, const std::string& who, sim::MeshDescription& mesh) {
+    if (in.Element()->HasElement("emissive")) WarnOfEmission(Linear(in.Emissive()) != glm::dvec3(0), who);
     if (in.Element()->HasElement("diffuse")) mesh.color = Linear(in.Diffuse());
     for (const auto type : {sdf::PbrWorkflowType::METAL, sdf::PbrWorkflowType::SPECULAR}) {
       const auto* flow = in.PbrMaterial() == nullptr ? nullptr : in.PbrMaterial()->Workflow(type);
@@ -228,6 +280,10 @@ class Reader {
       if (!in.Element()->HasElement("diffuse")) mesh.color = glm::dvec3(1);
     }
     if (!in.ScriptName().empty()) ReadScript(in, who, mesh);
+  }
+
+  void WarnOfEmission(bool is_emissive, const std::string& who) {
+    if (is_emissive) warnings_.Add(who, "emission is not rendered: lights alone make it bright");
   }
 
   void ReadScript(const sdf::Material& in, const std::string& who, sim::MeshDescription& mesh) {
@@ -241,7 +297,9 @@ class Reader {
     if (!material)
       return warnings_.Add(who + "'" + in.ScriptName() + "': ", "a material that is in no script is left out");
     mesh.color = material->diffuse ? Linear(*material->diffuse) : glm::dvec3(1);
+    WarnOfEmission(material->is_emissive, who);
     if (material->texture.empty()) return;
+    if (material->is_scaled) warnings_.Add(who, "the scale of a script's texture is not applied");
     const auto has = [&](const fs::path& folder) { return fs::is_regular_file(folder / material->texture); };
     const auto folder = std::ranges::find_if(pictures, has);
     if (folder != pictures.end()) return void(mesh.texture = *folder / material->texture);
@@ -250,6 +308,7 @@ class Reader {
   }
 
   fs::path file_, shapes_;
+  std::string urdf_;               // its text; empty: it is SDF
   std::vector<fs::path> folders_;  // of models
   ImportedWorld result_;
   sim::WarningList warnings_;
@@ -257,6 +316,8 @@ class Reader {
 };
 
 }  // namespace
+
+fs::path ModelOf(const fs::path& folder) { return sdf::getModelFilePath(folder.string()); }
 
 ImportedWorld ReadSdf(const fs::path& file, const std::vector<fs::path>& folders, const fs::path& shapes) {
   return Reader(file, folders, shapes).Read();

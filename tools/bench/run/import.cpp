@@ -6,6 +6,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 
+#include "sim/world/mesh_import.h"
+#include "sim/world/mesh_loader.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/files.h"
 #include "tools/bench/errors.h"
@@ -27,10 +29,19 @@ bool IsOneOf(const fs::path& file, const std::set<std::string>& extensions) {
 bool IsDescription(const fs::path& file) { return IsOneOf(file, {".sdf", ".world", ".urdf"}); }
 const std::set<std::string> kMeshes = {".gltf", ".glb", ".obj", ".ply", ".dae", ".fbx", ".stl", ".3ds", ".md3"};
 
-// Of a folder: its one description, or all its mesh files.
+const std::set<std::string> kInDouble = {".gltf", ".glb", ".obj", ".ply"};  // are read so
+
+// Of a folder: what its model.config names, its one description, or all its mesh files.
 ImportedWorld WorldOf(const ImportOptions& options, const fs::path& shapes) {
   std::vector<fs::path> files = {options.from};
-  if (fs::is_directory(options.from)) {
+  if (!fs::exists(options.from)) throw BadInput(options.from.string() + ": no such file");
+  if (!fs::is_regular_file(options.from) && !fs::is_directory(options.from))
+    throw BadInput(options.from.string() + ": neither a file nor a folder");
+  const fs::path config = options.from.filename() == "model.config" ? options.from : options.from / "model.config";
+  if (fs::is_regular_file(config)) {
+    files = {ModelOf(config.parent_path())};
+    if (!fs::is_regular_file(files[0])) throw BadInput(config.string() + ": names no file that is there");
+  } else if (fs::is_directory(options.from)) {
     files.assign(fs::directory_iterator(options.from), fs::directory_iterator());
     std::ranges::sort(files);
     const auto description = std::ranges::find_if(files, IsDescription);
@@ -38,16 +49,27 @@ ImportedWorld WorldOf(const ImportOptions& options, const fs::path& shapes) {
       throw BadInput(options.from.string() + ": has several descriptions (.sdf, .world, .urdf): name one of them");
     if (description != files.end()) files = {fs::path(*description)};
   }
-  if (files.size() == 1 && IsDescription(files[0]))
+  if (files == std::vector{options.from} && !files[0].has_extension())
+    throw BadInput(files[0].string() + ": has no extension, which says its kind: .sdf, .urdf, .obj, .ply, .glb, ...");
+  if (files.size() == 1 && (IsDescription(files[0]) || IsOneOf(files[0], {".xml", ".erb"})))
     return Input([&] { return ReadSdf(files[0], options.models, shapes); });
   ImportedWorld result;
+  glm::dvec3 origin(0.0);
+  sim::WarningList warnings;
   for (const fs::path& file : files) {
     if (file != options.from && !IsOneOf(file, kMeshes)) continue;
     sim::MeshDescription& mesh = result.world.meshes.emplace_back();
     mesh.file = file;
     mesh.name = file.filename().string();
     mesh.category = file.stem().string();
+    const glm::dvec3 own = IsOneOf(file, kInDouble) ? sim::ImportMesh(file, {}).origin : glm::dvec3(0);
+    if (own == glm::dvec3(0)) continue;
+    if (origin == glm::dvec3(0)) origin = own;  // of all, so that they stay together
+    mesh.position = -origin;
+    warnings.Add(file.string() + ": ",
+                 "far from the origin, as in a survey: position " + ListText(mesh.position) + " moves it there");
   }
+  result.warnings = warnings.Summed();
   if (result.world.meshes.empty())
     throw BadInput(options.from.string() + ": holds neither a description (.sdf, .world, .urdf) nor a mesh file");
   return result;

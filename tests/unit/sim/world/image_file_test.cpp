@@ -1,6 +1,7 @@
 #include "sim/world/image_file.h"
 
 #include <gmock/gmock.h>
+#include <libdeflate.h>
 
 #include <algorithm>
 #include <iterator>
@@ -37,6 +38,26 @@ TEST(ImageFile, ColoursAndOrder) {
   EXPECT_THAT(image.rgb, testing::ElementsAre(10, 20, 30, 1, 2, 3, 10, 20, 30, 10, 20, 30, 10, 20, 30, 10, 20, 30));
 }
 
+// tRNS of a grey PNG names the grey that is transparent.
+TEST(ImageFile, GreyThatIsTransparent) {
+  const auto word = [](std::uint32_t value) {
+    return std::string{static_cast<char>(value >> 24), static_cast<char>(value >> 16), static_cast<char>(value >> 8),
+                       static_cast<char>(value)};
+  };
+  for (const int type : {CV_8UC1, CV_16UC1}) {
+    cv::Mat picture(1, 3, type, cv::Scalar(200));
+    picture.col(1).setTo(7);
+    std::vector<std::uint8_t> bytes;
+    cv::imencode(".png", picture, bytes);
+    std::string chunk = {"tRNS\0\7", 6};
+    chunk = word(2) + chunk + word(libdeflate_crc32(0, chunk.data(), chunk.size()));
+    const auto at = std::ranges::search(bytes, std::string("IDAT")).begin() - 4;
+    bytes.insert(at, chunk.begin(), chunk.end());
+    EXPECT_THAT(DecodeImage(bytes, true).alpha, testing::ElementsAre(255, 0, 255)) << type;
+    EXPECT_THAT(DecodeImage(bytes).alpha, testing::IsEmpty());
+  }
+}
+
 TEST(ImageFile, WhatTheDecoderRefusesAfterAGoodHeader) {
   EXPECT_EQ(Complaint("P6\n4 4\n255\nshort"), "not a picture that can be decoded");
 }
@@ -71,6 +92,15 @@ TEST(ImageFile, JpegWithAShortThumbnail) {
   const std::string with_thumbnail = whole.substr(0, 2) + application + thumbnail + whole.substr(2);
   EXPECT_EQ(Complaint(with_thumbnail), "none");
   EXPECT_THAT(Complaint(with_thumbnail.substr(0, with_thumbnail.size() - 2)), testing::StartsWith("truncated"));
+}
+
+TEST(ImageFile, LinearValuesOfRadianceAreCoded) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".hdr", cv::Mat(2, 2, CV_32FC3, cv::Scalar(1.5, 0.001, 0.2158605)), bytes);
+  const DecodedImage image = DecodeImage(bytes);
+  EXPECT_NEAR(image.rgb.at(0), 128, 3);
+  EXPECT_NEAR(image.rgb.at(1), 3, 3);
+  EXPECT_EQ(image.rgb.at(2), 255);
 }
 
 TEST(ImageFile, NotAPicture) {
@@ -114,6 +144,7 @@ TEST(ImageFile, TgaOfEveryKind) {
       Tga(2, 32, 40, {0, 0, 255, 1, 0, 255, 0, 2, 255, 0, 0, 3, 9, 9, 9, 4, 0, 0, 0, 5, 255, 255, 255, 6}), true);
   EXPECT_EQ(alpha.rgb, rgb);
   EXPECT_EQ(alpha.alpha, (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}));
+  EXPECT_TRUE(DecodeImage(Tga(2, 32, 32, std::vector<std::uint8_t>(24)), true).alpha.empty()) << "no bits of alpha";
   EXPECT_EQ(DecodeImage(Tga(3, 8, 32, {1, 2, 3, 4, 5, 6})).rgb,
             (std::vector<std::uint8_t>{1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5, 5, 5, 6, 6, 6}));
   const std::vector<std::uint8_t> palette = {0, 0, 255, 0, 255, 0, 0, 1, 0, 1, 1, 0};

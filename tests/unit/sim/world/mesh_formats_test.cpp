@@ -314,6 +314,52 @@ TEST(MeshFormats, ColladaOfOtherPrograms) {
   EXPECT_FLOAT_EQ(material.emission.x, 0.25f);
 }
 
+// COLLADA with two sets of texture coordinates: the bound one counts, by its number among those of the polygons.
+TEST(MeshFormats, ColladaWithTwoSets) {
+  const auto first_corners = [](const std::string& name, int bound, int set, std::vector<std::string>* warnings) {
+    const Folder folder;
+    folder.Write("paint.png", EncodeNoise(".png", 8, 4));
+    const auto source = [](const std::string& id, const std::string& axes, const std::string& numbers) {
+      std::string text = "<source id='" + id + "'><float_array id='" + id + "a' count='" +
+                         std::to_string(3 * axes.size()) + "'>" + numbers + "</float_array><technique_common>" +
+                         "<accessor source='#" + id + "a' count='3' stride='" + std::to_string(axes.size()) + "'>";
+      for (const char axis : axes) text += std::string("<param name='") + axis + "' type='float'/>";
+      return text + "</accessor></technique_common></source>";
+    };
+    const std::string text =
+        "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'>"
+        "<library_images><image id='i'><init_from>paint.png</init_from></image></library_images><library_effects>"
+        "<effect id='e'><profile_COMMON><newparam sid='s'><surface type='2D'><init_from>i</init_from></surface>"
+        "</newparam><newparam sid='p'><sampler2D><source>s</source></sampler2D></newparam><technique sid='c'><lambert>"
+        "<diffuse><texture texture='p' texcoord='" +
+        name +
+        "'/></diffuse></lambert></technique></profile_COMMON>"
+        "</effect></library_effects><library_materials><material id='m'><instance_effect url='#e'/></material>"
+        "</library_materials><library_geometries><geometry id='g'><mesh>" +
+        source("x", "XYZ", "0 0 0 1 0 0 0 1 0") + source("t", "ST", "0 0 1 0 0 1") + source("l", "ST", "5 5 5 5 5 5") +
+        "<vertices id='v'><input semantic='POSITION' source='#x'/></vertices><triangles material='m' count='1'>"
+        "<input semantic='VERTEX' source='#v' offset='0'/><input semantic='TEXCOORD' source='#t' offset='1' set='" +
+        std::to_string(set) + "'/><input semantic='TEXCOORD' source='#l' offset='2' set='" + std::to_string(set + 1) +
+        "'/><p>0 0 0 1 1 1 2 2 2</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>"
+        "<visual_scene id='w'><node><instance_geometry url='#g'><bind_material><technique_common>"
+        "<instance_material symbol='m' target='#m'>" +
+        (bound < 0 ? ""
+                   : "<bind_vertex_input semantic='" + name + "' input_semantic='TEXCOORD' input_set='" +
+                         std::to_string(bound) + "'/>") +
+        "</instance_material></technique_common></bind_material></instance_geometry></node></visual_scene>"
+        "</library_visual_scenes><scene><instance_visual_scene url='#w'/></scene></COLLADA>";
+    const Scene scene = LoadScene(WorldOf(folder.Write("model.dae", text)));
+    if (warnings != nullptr) *warnings = scene.warnings;
+    return scene.meshes.at(0).uvs.at(1);
+  };
+  EXPECT_EQ(first_corners("CHANNEL1", 1, 1, nullptr), glm::vec2(1, 1));
+  EXPECT_EQ(first_corners("Atlas_2048", 0, 0, nullptr), glm::vec2(1, 1));
+  EXPECT_EQ(first_corners("UVMap", 1, 0, nullptr), glm::vec2(5, -4)) << "the second";
+  std::vector<std::string> warnings;
+  EXPECT_EQ(first_corners("map1", -1, 0, &warnings), glm::vec2(1, 1));
+  EXPECT_THAT(warnings, ElementsAre(HasSubstr("bound to no set")));
+}
+
 // Truncation: a file is refused or gives a smaller world (a PLY or OBJ without its end may be valid).
 TEST(MeshFormats, TruncatedFilesEndWell) {
   const Folder folder;

@@ -253,8 +253,8 @@ TEST(BadWorld, AllProblemsAtOnce) {
   world.meshes.push_back(
       {folder.Write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"), glm::dvec3(0), {1, 0, 0, 0}, 1, {}, {}});
   world.lights = {SunLight{{0, 0, 0}, {1, 1, 1}}};
-  EXPECT_THAT(Problems(world), ElementsAre(HasSubstr("lights[0]"), HasSubstr("none.ply"), HasSubstr("nan.obj"),
-                                           HasSubstr("gone.png"), HasSubstr("text.png")));
+  EXPECT_THAT(Problems(world), ElementsAre(HasSubstr("lights[0]"), HasSubstr("none.ply"), HasSubstr("gone.png"),
+                                           HasSubstr("nan.obj"), HasSubstr("text.png")));
   try {
     LoadScene(world);
     FAIL() << "nothing was thrown";

@@ -162,6 +162,7 @@ TEST_F(Obj, OptionsOfMaps) {
                                                           {"-s 2 3 1 ", 2, 3},
                                                           {"-o 0.25 0.5 0 -s 2 1 1 ", 2.25, 1.5},
                                                           {"-s 2 ", 2, 1},
+                                                          {"-colorspace sRGB -S 2 3 1 ", 2, 3},
                                                           {"-bm 0.5 -blendu on -o 0.5 ", 1.5, 1}}) {
     folder_.Write("m.mtl", "newmtl a\n\tmap_Kd  " + options + "my picture.png \t\r\n");
     const Scene scene = Load(std::string("mtllib m.mtl\n") + kFace);
@@ -232,6 +233,70 @@ TEST_F(Obj, MissingTexturesAreGreyWhereThatIsAskedFor) {
   const Scene scene = LoadScene(world);
   EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("2 ×"), HasSubstr("gone.png"), HasSubstr("is grey"))));
   EXPECT_NEAR(scene.textures.at(0).Texel(0, 0, 0).x, SrgbToLinear(128 / 255.0), 1e-3);
+}
+
+TEST_F(Obj, CommentsAndContinuations) {
+  folder_.Write("m.mtl", "newmtl a   # the wall\nKd 0.25 0.25 0.25 # dark\nnewmtl Material #25\nKd 1 0 0\n");
+  const std::string text = "mtllib m.mtl # one\n# C:\\out\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  const Scene scene = Load(text + "usemtl a # note\nf 1 2 \\ \n 3\nusemtl Material #25\nf 1 2 3\n");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_EQ(scene.materials.at(0).base_color, glm::vec3(0.25f));
+  EXPECT_EQ(scene.materials.at(1).base_color, glm::vec3(1, 0, 0));
+}
+
+TEST_F(Obj, ValuesThatAreNoNumbersAreSaid) {
+  folder_.Write("m.mtl", "newmtl a\nKd 0,5 0,5 0,5\nKd spectral red.rfl\nKd xyz 0.2 0.1 0\nKd 0.5\nKd 0.5 0,5 0,5\n");
+  const Scene scene = Load(std::string("mtllib m.mtl\n") + kFace);
+  EXPECT_THAT(scene.warnings, ElementsAre(AllOf(HasSubstr("m.mtl: 4 ×"), HasSubstr("line 2: Kd 0,5 0,5 0,5"))));
+  EXPECT_EQ(MaterialOf(scene).base_color, glm::vec3(0.5f));
+}
+
+TEST_F(Obj, NormalsThatAreNoNumbersAreFlat) {
+  const Scene scene = Load("v 0 0 0\nv 1 0 0\nv 0 1 0\nvn -1.#IND 0 0\nf 1//1 2//1 3//1\n");
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("flat normals are used")));
+}
+
+TEST_F(Obj, StrayVerticesDoNotCount) {
+  position_ = {-500000, -4600000, 0};
+  const Scene scene = Load("v 0 0 0\nv 500000 4600000 0\nv 500001.25 4600000 0\nv 500000 4600001 0\nf 2 3 4\n");
+  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_EQ(scene.meshes.at(0).positions[1], glm::vec3(1.25f, 0, 0));
+}
+
+TEST_F(Obj, PointsAndLinesAreRefusedByName) {
+  EXPECT_THAT(Problems("v 0 0 0\nv 1 0 0\nl 1 2\np 1\n"), HasSubstr("points, lines and curves are not rendered"));
+}
+
+TEST_F(Obj, FoldersInOtherCapitals) {
+  folder_.Write("maps/deep/wood.png", EncodeColor(".png", 1, 2, 3));
+  folder_.Write("m.mtl", "newmtl a\nmap_Kd Maps\\Deep\\Wood.PNG\n");
+  const Scene scene = Load(std::string("mtllib m.mtl\n") + kFace);
+  EXPECT_EQ(Picture(scene), "wood.png");
+  EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("taken from where one of its name lies")));
+}
+
+TEST_F(Obj, OfAColourAndItsMaskTheBadOneIsNamed) {
+  const std::string whole = EncodeNoise(".png", 32, 32);
+  folder_.Write("cut.png", whole.substr(0, 100));
+  folder_.Write("good.png", whole);
+  const auto problems = [&](const std::string& color, const std::string& mask) {
+    folder_.Write("m.mtl", "newmtl a\nmap_Kd " + color + "\nmap_d " + mask + "\n");
+    return ProblemsOf([&] { Load(std::string("mtllib m.mtl\n") + kFace); });
+  };
+  EXPECT_THAT(problems("cut.png", "good.png"), ElementsAre(HasSubstr("cut.png: texture of material 'a'")));
+  EXPECT_THAT(problems("good.png", "cut.png"), ElementsAre(HasSubstr("cut.png: texture of material 'a'")));
+  EXPECT_THAT(problems("gone.png", "good.png"), ElementsAre(HasSubstr("gone.png: texture of material 'a'")));
+  EXPECT_THAT(problems("gone.png", "lost.png"), ElementsAre(HasSubstr("gone.png: "), HasSubstr("lost.png: ")));
+}
+
+// Brightness masks where all alpha is 255.
+TEST_F(Obj, MasksWithOpaqueAlpha) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", cv::Mat(4, 4, CV_8UC4, cv::Scalar(0, 0, 0, 255)), bytes);
+  folder_.Write("mask.png", {bytes.begin(), bytes.end()});
+  folder_.Write("grey.png", EncodeColor(".png", 128, 128, 128));
+  folder_.Write("m.mtl", "newmtl a\nmap_Kd grey.png\nmap_d mask.png\n");
+  EXPECT_THAT(Load(std::string("mtllib m.mtl\n") + kFace).warnings, ElementsAre(HasSubstr("below 0.5 everywhere")));
 }
 
 TEST_F(Obj, BumpMapsAreSaid) {

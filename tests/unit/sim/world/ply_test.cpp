@@ -126,6 +126,45 @@ TEST_F(Ply, AsOtherProgramsWriteIt) {
   }
 }
 
+TEST_F(Ply, CoordinatesByOtherNames) {
+  folder_.Write("a.png", EncodeColor(".png", 1, 2, 3));
+  for (const auto& [u, v, known] :
+       std::vector<std::tuple<std::string, std::string, bool>>{{"S", "T", true},
+                                                               {"texcoord_u", "texcoord_v", true},
+                                                               {"u0", "v0", true},
+                                                               {"uv_0", "uv_1", true},
+                                                               {"map_u", "map_v", false}}) {
+    std::string text = "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\n";
+    for (const std::string& name : {std::string("x"), std::string("y"), std::string("z"), u, v})
+      text += "property float " + name + "\n";
+    const Scene scene = Load(text + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+                             "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n");
+    EXPECT_EQ(scene.textures.size(), known ? 1 : 0) << u;
+    EXPECT_EQ(base::Join(scene.warnings, "").find("no texture coordinates that are known") == std::string::npos, known);
+  }
+}
+
+TEST_F(Ply, PicturesByANumberThatIsNotThere) {
+  folder_.Write("a.png", EncodeColor(".png", 1, 2, 3));
+  const Scene scene = Load(
+      "ply\nformat ascii 1.0\ncomment TextureFile a.png\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 3\nproperty list uchar int vertex_indices\nproperty list uchar float "
+      "texcoord\nproperty int texnumber\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 6 0 0 1 0 0 1 0\n"
+      "3 0 1 2 6 0 0 1 0 0 1 5\n3 0 1 2 6 0 0 1 0 0 1 -1\n");
+  EXPECT_EQ(std::ranges::count_if(
+                scene.meshes,
+                [&](const Mesh& m) { return scene.materials[static_cast<std::size_t>(m.material)].texture >= 0; }),
+            1);
+  EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("2 of its faces name a picture (texnumber)")));
+}
+
+TEST_F(Ply, CloudsAndSplatsAreRefusedByName) {
+  const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n";
+  EXPECT_THAT(Problems(head + "property float z\nend_header\n0 0 0\n"), HasSubstr("it is a point cloud"));
+  EXPECT_THAT(Problems(head + "property float z\nproperty float f_dc_0\nend_header\n0 0 0 0\n"),
+              HasSubstr("it holds Gaussian splats"));
+}
+
 TEST_F(Ply, BrokenOnesAreRefused) {
   const std::string head =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
