@@ -163,24 +163,47 @@ TEST_F(CampaignTest, TheOdometryOfAnotherKindFindsItsWay) {
 }
 
 TEST_F(CampaignTest, AProgramThatIsNotThereIsNoResult) {
-  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: gone, command: \"/nowhere/slam {sequence}\"}\n");
-  WriteFile(here_ / "c.yaml", CampaignOf("[gone]"));
+  const std::string silent = "  - {name: silent, command: \"true\"}\n";
+  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: gone, command: \"/nowhere/slam {sequence}\"}\n" + silent);
+  WriteFile(here_ / "c.yaml", CampaignOf("[gone, silent]"));
   const Outcome dry = RunVobench({"campaign", "c.yaml", "-o", "dry", "--dry-run"}, here_.path());
   EXPECT_EQ(dry.status, 2);
   EXPECT_THAT(dry.err, HasSubstr("gone: '/nowhere/slam' is not there, or cannot be executed"));
-  const Outcome outcome = Run(CampaignOf("[gone]"), "out");
+  const Outcome alone = Run(CampaignOf("[gone]"), "alone");
+  EXPECT_EQ(alone.status, 2) << "without a picture";
+  EXPECT_THAT(alone.err, HasSubstr("gone: '/nowhere/slam' is not there"));
+  const Outcome outcome = Run(CampaignOf("[gone, silent]"), "out");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err, HasSubstr("gone: cannot be started (status 127)"));
   EXPECT_EQ(BySystem(Results("out"))["gone"]["status"], "failed");
   // Script that the interpreter does not find: the reason is its message, without the folder of the run.
   WriteFile(here_ / "systems.yaml",
-            "systems:\n  - {name: gone, command: \"/bin/sh {here}/gone.sh; echo $PWD/x; exit 2\"}\n");
+            "systems:\n  - {name: gone, command: \"/bin/sh {here}/gone.sh; echo $PWD/x; exit 2\"}\n" + silent);
   const std::string said = "gone: '{here}/gone.sh', which the command names, is not there";
   EXPECT_THAT(RunVobench({"campaign", "c.yaml", "-o", "dry", "--dry-run"}, here_.path()).err, HasSubstr(said));
-  const Outcome script = Run(CampaignOf("[gone]"), "script");
+  const Outcome script = Run(CampaignOf("[gone, silent]"), "script");
   EXPECT_EQ(script.status, 0) << script.err;
   EXPECT_THAT(script.err, HasSubstr(said));
   EXPECT_EQ(BySystem(Results("script"))["gone"]["reason"], "ended with status 2: x (tasks/00/000000/log.txt)");
+}
+
+// A program that overwrites what all systems share: its task fails, and the sequence is made anew.
+TEST_F(CampaignTest, AProgramThatChangesItsInputFails) {
+  WriteFile(here_ / "systems.yaml",
+            "systems:\n"
+            "  - {name: writes, command: \"for f in {sequence}/rgb/*; do echo x > $f; done\"}\n"
+            "  - {name: reads, command: \"awk '/^[^#]/ {print $1, NR, NR * NR, 0, 0, 0, 0, 1}' {sequence}/rgb.txt > "
+            "{trajectory}\"}\n");
+  const Outcome outcome = Run(CampaignOf("[writes]"), "out");
+  EXPECT_EQ(outcome.status, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("writes: the program changed its input, rgb/"));
+  EXPECT_EQ(BySystem(Results("out"))["writes"]["status"], "failed");
+  MustRun(CampaignOf("[reads]"), "again", {"--cache", "out/cache"});
+  EXPECT_EQ(BySystem(Results("again"))["reads"]["status"], "ok");
+  for (const auto& entry : fs::recursive_directory_iterator(here_ / "out/cache"))
+    if (entry.path().extension() == ".png" && entry.path().string().find(".changed") == std::string::npos) {
+      EXPECT_GT(entry.file_size(), 100u) << entry.path();
+    }
 }
 
 TEST_F(CampaignTest, AProgramThatIsBuiltAnewIsRunAnew) {

@@ -86,6 +86,13 @@ cv::Mat Moved(const cv::Mat& image, double dx) {
   return moved;
 }
 
+// Ours with the images alone is not given the shutter's time of a rendered sequence, nor is another program.
+TEST_F(ServedSequenceTest, HasNoTimeOfTheShutter) {
+  const ServedSequence served =
+      Served(With({{{"sensor.rolling_shutter", "5 ms"}}}), false, campaign::SequenceLayout::tum);
+  EXPECT_FALSE(vo::ReadCamera(served.folder / "camera.yaml").readout_s);
+}
+
 // Rectified image against the rendering of a pinhole camera, in all parts.
 TEST_F(ServedSequenceTest, ARectifiedPictureIsThatOfThePinhole) {
   for (const Overrides& lens : {kFreiburg1, kBarrel, kFisheye}) {

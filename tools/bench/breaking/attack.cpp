@@ -8,6 +8,7 @@
 #include "tools/bench/breaking/attack_search.h"
 #include "tools/bench/breaking/step.h"
 #include "tools/bench/errors.h"
+#include "tools/bench/systems/systems.h"
 
 namespace vobench::breaking {
 namespace {
@@ -109,13 +110,19 @@ void RunAttack(const BenchOptions& options, const BenchFile& bench) {
                           attack.steps().system());
   scenario += base::ReadFile(options.output / (last + ".yaml")).value_or("");
   base::WriteFile(options.output / "attack.yaml", scenario);
+  const std::string& system = attack.steps().system();
+  const std::vector<std::string> ours = SystemNames();
+  const bool is_ours = std::ranges::find(ours, system) != ours.end();
+  const std::string one_world = is_ours ? fmt::format("; or one world of it:\n\n    vobench run {}{} --system {}",
+                                                      bench.attack.front().file.string(), flags, system)
+                                        : "";
+  const std::string what = Words(bench, x);
   fmt::print(
       "broken by {}\nnorm {:.3f} of ranges of 1 each, {} of {} parameters changed, {} trials; {} of {} other worlds "
-      "are broken\n\n"
-      "{} reproduces it; or one world of it:\n\n    vobench run {}{}\n",
-      Words(bench, x), norm, std::ranges::count_if(x, [](double value) { return value > 0; }), x.size(),
-      result.evaluations, broken, kConfirming, (options.output / "attack.yaml").string(),
-      bench.attack.front().file.string(), flags);
+      "are broken\n\n`vobench campaign {}` reproduces it{}\n",
+      what.empty() ? "the mildest value of every parameter" : what, norm,
+      std::ranges::count_if(x, [](double value) { return value > 0; }), x.size(), result.evaluations, broken,
+      kConfirming, (options.output / "attack.yaml").string(), one_world);
 }
 
 }  // namespace vobench::breaking

@@ -89,24 +89,28 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
       const std::string end = Replaced(Name(record.status), {{'_', " "}});
       if (record.status != Status::ok && ends.find(end) == std::string::npos) ends += (ends.empty() ? "" : ", ") + end;
     }
-    const double nees = MedianOf(records, system, "nees_pose_per_dof"), ate = MedianOf(records, system, "ate_m");
+    const double nees = MedianOf(records, system, "nees_pose_per_dof"), ate = MedianOf(records, system, "ate_m"),
+                 coverage = MedianOf(records, system, "pose_coverage");
+    const std::string of_few = coverage < 0.95 ? fmt::format(" @ {:.0f} % of the frames", 100 * coverage) : "";
     const std::string how = evaluation::Name(AlignmentOf(campaign, campaign.systems[s]));
     html += "<h2 class=\"system\">" + report::Key(s) +
             Escape(Label(campaign.systems[s].external, DisplayName(system))) + "</h2>" +
-            report::Tiles({{std::isinf(ate) ? ends : Fixed(100 * ate, 2) + " cm", "ATE, median of all tasks",
-                            "position RMSE after alignment " + how + "; a lost run counts as worse than any number"},
-                           {fmt::format("{} of {}", lost, runs), "runs " + (lost == 0 ? "lost" : ends),
-                            "by the rule of the campaign; failed tasks are no runs"},
-                           {ours ? NumberOrLost(nees) : "–", "NEES of the pose, median of all tasks; 1 is ideal",
-                            "time mean per degree of freedom, not aligned"}});
+            report::Tiles(
+                {{std::isinf(ate) ? ends : Fixed(100 * ate, 2) + " cm" + of_few, "ATE, median of all tasks",
+                  "position RMSE after alignment " + how + "; a lost run counts as worse than any number"},
+                 {fmt::format("{} of {}", lost, runs), "runs " + (lost == 0 ? "lost" : ends),
+                  "crashed, timed out, no answer: as the program ended; lost: by the campaign's limits of coverage and "
+                  "error; tasks that failed are not counted"},
+                 {ours ? NumberOrLost(nees) : "–", "NEES of the pose, median of all tasks; 1 is ideal",
+                  ours ? "time mean per degree of freedom, not aligned" : "without a covariance"}});
   }
   return html;
 }
 
 std::string TaskTable(const Campaign& campaign, const std::vector<TaskRecord>& records) {
   const std::vector<std::string> varied = VariedNames(campaign);
-  const std::vector<std::string> shown = {"ate_m",      "ate_live_m", "rpe_m", "tracked_coverage", "nees_pose_per_dof",
-                                          "nis_per_dof"};
+  const std::vector<std::string> shown = {
+      "ate_m", "ate_live_m", "rpe_m", "pose_coverage", "tracked_coverage", "nees_pose_per_dof", "nis_per_dof"};
   TextRow head = varied;
   head.insert(head.begin(), "task");
   head.insert(head.end(), {"system", "seed", "status", "alignment"});

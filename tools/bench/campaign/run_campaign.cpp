@@ -194,7 +194,9 @@ void RunAll(CampaignWork& work, const CampaignOptions& options) {
   RemoveSystems(work.campaign(), options);
   OutputState state = Inspect(options.output, keys);
   RefuseStale(options, state, tasks);
-  for (const std::string& problem : Foreseen(work.campaign())) fmt::print(stderr, "vobench: {}\n", problem);
+  const std::vector<std::string> foreseen = Foreseen(work.campaign());
+  if (!slurm && foreseen.size() == work.campaign().systems.size()) throw BadInput(base::Join(foreseen, "\n"));
+  for (const std::string& problem : foreseen) fmt::print(stderr, "vobench: {}\n", problem);
   base::WriteFile(options.output / "campaign.json", Record(work.campaign()), base::Writers::many);
   if (!state.stale.empty()) {
     for (const std::int64_t task : state.stale) fs::remove_all(TaskPath(options.output, task));

@@ -131,7 +131,10 @@ std::string Caption(const Table& table) {
     few = few || std::ranges::any_of(row, &Cell::few_poses);
   }
   const std::string runs = least == most ? fmt::format("{}", most) : fmt::format("{} to {}", least, most);
-  const std::string how = table.alignment ? "after alignment " + evaluation::Name(*table.alignment) + ", " : "";
+  const bool is_relative = table.spec.metric.starts_with("rpe");  // not aligned, but in its scale
+  const std::string how = table.alignment ? (is_relative ? "in the scale of alignment " : "after alignment ") +
+                                                evaluation::Name(*table.alignment) + ", "
+                                          : "";
   return fmt::format(
       "Median [quartiles] {}over {} runs a cell; X: no usable answer (how: below), worse than any number{}.", how, runs,
       few ? "; @: frames with a pose, where they are below 95 %" : "");

@@ -42,8 +42,9 @@ std::string SystemSentence(const SystemSummary& s, const std::vector<SystemSumma
   text += "), drift " + Fixed(100 * s.rpe_m, 2) + " cm/s and " + Fixed(kDegrees * s.rpe_rad, 2) + " °/s, " +
           Percent(s.tracked_coverage) + " of the frames tracked; " + ConsistencyPhrase(s) + ". ";
   const double best = std::min(baselines[0].ate_m, baselines[1].ate_m);
-  text += s.ate_m < best ? "The better of the two blind baselines is " + Readable(best / s.ate_m) + " times as far off."
-                         : "<b>It does no better than a baseline that never looks at the images.</b>";
+  text += s.ate_m < best ? "The better baseline has " + Readable(best / s.ate_m) + " times its ATE."
+                         : "<b>Its ATE is not below that of the better baseline, which starts at the true pose and "
+                           "has no images.</b>";
   return text;
 }
 

@@ -227,6 +227,17 @@ void RefuseMissing(const campaign::SystemEntry& system, const SeenSequence& seen
     refuse("", who + "EuRoC's layout: " + problem);
 }
 
+// "divide the times by 1e3" where these span the frames' time then; else what they may be.
+std::string Remedy(const evaluation::Trajectory& trajectory, const std::vector<std::int64_t>& frames) {
+  const std::int64_t span = trajectory.back().stamp_ns - trajectory.front().stamp_ns;
+  for (const auto& [factor, text] : {std::pair(1000, "1e3"), std::pair(1000000, "1e6"), std::pair(1000000000, "1e9")}) {
+    const bool fits = 2 * CountAnswered(trajectory, frames, factor).poses >= trajectory.size();
+    if (fits && 2 * (span / factor) >= frames.back() - frames.front())
+      return std::string(": divide the times by ") + text;
+  }
+  return ": they are no times of these frames (numbers of frames, another clock?)";
+}
+
 // Checks for stamps in another unit, or from another clock, which may fit one frame by chance; and for the last one.
 void CheckStamps(const TaskOutput& output, TaskRecord& record) {
   if (record.status != campaign::Status::ok || output.run.trajectory.empty()) return;
@@ -238,9 +249,7 @@ void CheckStamps(const TaskOutput& output, TaskRecord& record) {
     record.reason = fmt::format(
         "of its {} time stamps {} are those of frames; the last is {} s, that of the last frame {} s", all,
         answered.poses, base::FormatSeconds(output.run.trajectory.back().stamp_ns), base::FormatSeconds(frames.back()));
-    for (const auto& [factor, text] : {std::pair(1000, "1e3"), std::pair(1000000, "1e6"), std::pair(1000000000, "1e9")})
-      if (2 * CountAnswered(output.run.trajectory, frames, factor).poses >= all)
-        record.reason += std::string(": divide the times by ") + text;
+    record.reason += Remedy(output.run.trajectory, frames);
   } else if (answered.until + 1 < frames.size()) {
     record.reason += fmt::format("{}no pose after the first {} of {} frames", record.reason.empty() ? "" : "; ",
                                  answered.until, frames.size());

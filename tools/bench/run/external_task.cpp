@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 
 #include "tools/base/files.h"
@@ -81,6 +82,35 @@ std::size_t RemoveNotFinite(const fs::path& file) {
   return removed;
 }
 
+// Size and time of change of each file that a program is given.
+std::map<fs::path, std::pair<std::uintmax_t, fs::file_time_type>> FilesOf(const fs::path& folder) {
+  std::map<fs::path, std::pair<std::uintmax_t, fs::file_time_type>> files;
+  constexpr auto kFollow = fs::directory_options::follow_directory_symlink;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, kFollow))
+    if (entry.is_regular_file()) files[entry.path()] = {entry.file_size(), entry.last_write_time()};
+  return files;
+}
+
+// Fails where a program has changed its input, which all systems share; the sequence is put aside.
+void CheckUnchanged(const campaign::SequenceCache& cache, const std::string& key, const std::string& system,
+                    const fs::path& folder,
+                    const std::map<fs::path, std::pair<std::uintmax_t, fs::file_time_type>>& before) {
+  const auto after = FilesOf(folder);
+  if (after == before) return;
+  const auto first = std::ranges::mismatch(before, after);
+  const fs::path& changed = first.in1 == before.end() ? first.in2->first : first.in1->first;
+  const campaign::FileLock lock = cache.Take(key);
+  const fs::path original = cache.PathOf(key), aside = original.string() + ".changed";
+  std::error_code ignored;  // another task may have put it aside
+  fs::remove_all(aside, ignored);
+  fs::rename(original, aside, ignored);
+  fs::remove_all(folder, ignored);
+  throw BadInput(fmt::format(
+      "{}: the program changed its input, {}, which all systems share: results since then are of other pictures; run "
+      "the campaign again without it",
+      system, fs::relative(changed, folder).string()));
+}
+
 // T_WI to T_WC of the first camera.
 void MoveToCamera(evaluation::Trajectory& trajectory, const Eigen::Isometry3d& T_IC) {
   for (evaluation::StampedPose& pose : trajectory) {
@@ -132,16 +162,19 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
                                {"trajectory", trajectory.string()},
                                {"seed", std::to_string(record.seed)}});
   const std::string before = system.configs.empty() ? "" : "( " + system.configs + " ) || exit 127\n";
+  const auto given = FilesOf(sequence.folder);
   const Clock clock;
   const campaign::CommandEnd end = campaign::RunCommand(campaign::FillIn(before + system.command, values), at_work,
                                                         folder / "log.txt", system.timeout_s);
+  CheckUnchanged(cache, key, system.name, sequence.folder, given);
   const auto lost = [&](campaign::Status status, const std::string& reason) {
     record.status = status;
     record.reason = reason;
   };
   std::string how;  // it ended, where that is not with status 0
   if (end.signal != 0)
-    how = fmt::format("ended by signal {} ({})", end.signal, strsignal(end.signal));
+    how = fmt::format("ended by signal {} ({}){}", end.signal, strsignal(end.signal),
+                      LastLine(folder / "log.txt", places));
   else if (end.status != 0)
     how = fmt::format("ended with status {}{}", end.status, LastLine(folder / "log.txt", places));
   ExternalAnswer answer{{}, sequence.stamps_ns, clock.seconds()};

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 using campaign::SequenceLayout;
-constexpr const char* kVersion = "3";  // version of the served content; part of the folders' names
+constexpr const char* kVersion = "4";  // version of the served content; part of the folders' names
 
 // Pinhole of the largest upright rectangle of rays inside this camera's picture, without a black border; its sides are
 // multiples of 16. Of a pinhole the middle of its picture. Throws std::invalid_argument where it includes rays behind
@@ -193,12 +193,12 @@ ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& ke
       WriteTimes(partial / "times.txt", frames, original / "exposure.txt", rendered ? &scenario.sensor : nullptr);
       if (rendered) WritePhotometricCalibration(partial, scenario, exact);
     }
-    fs::copy_file(tum / "camera.yaml", partial / "camera.yaml");
-    if (focal_error == 0) return;
-    const bool with_shutter =
-        base::ReadFile(tum / "camera.yaml").value_or("").find("rolling_shutter") != std::string::npos;
-    std::string text = sim::CameraYaml(served.camera, scenario.sensor.readout_s);
-    if (!with_shutter) text.erase(text.find("rolling_shutter"));
+    std::string text = base::ReadFile(tum / "camera.yaml").value_or("");
+    const bool with_shutter = text.find("rolling_shutter") != std::string::npos;
+    if (focal_error != 0) text = sim::CameraYaml(served.camera, scenario.sensor.readout_s);
+    // Ours is not given it either where it has the images alone.
+    if (text.find("rolling_shutter") != std::string::npos && (rendered || !with_shutter))
+      text.erase(text.find("rolling_shutter"));
     base::WriteFile(partial / "camera.yaml", text);
   });
   return served;

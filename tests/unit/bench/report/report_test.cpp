@@ -159,7 +159,7 @@ TEST(WriteReport, NoBetterThanAConstantPose) {
   options.seeds = 1;
   options.systems = {{"rb2pf", 3, 1, 1}};
   WriteFakeResult(folder.path(), options);
-  EXPECT_THAT(PageOf(folder), HasSubstr("It does no better than a baseline that never looks at the images."));
+  EXPECT_THAT(PageOf(folder), HasSubstr("Its ATE is not below that of the better baseline"));
 }
 
 TEST(WriteReport, OverConfidentAndCautious) {
