@@ -129,13 +129,16 @@ std::optional<PoseHeader> ReadPoseHeader(std::string_view line, std::string& pro
   const auto count = [&](char separator) { return std::ranges::count(line, separator) + 1; };
   const bool is_prose = std::max(count(','), count(';')) < static_cast<std::ptrdiff_t>(PoseHeader::kPose);
   std::vector<std::string> names;
-  std::vector<std::string_view> of_names;
+  std::vector<int> exponents;
   for (const Word& cell : cells) {
-    names.push_back(NameOf(cell.text));
-    of_names.push_back(cell.text);
-    if (!is_prose || !names.back().empty()) continue;
-    names.pop_back();  // "#", "[s]"
-    of_names.pop_back();
+    const std::string name = NameOf(cell.text);
+    const int exponent = ExponentOf(cell.text);
+    if (is_prose && name.empty()) {  // "#"; "[ns]" of the name before it
+      if (!exponents.empty() && exponent != 0) exponents.back() = exponent;
+      continue;
+    }
+    names.push_back(name);
+    exponents.push_back(exponent);
   }
   Named found = Assign(names);
   PoseHeader header{{}, names.size(), false, 0};
@@ -161,7 +164,7 @@ std::optional<PoseHeader> ReadPoseHeader(std::string_view line, std::string& pro
     return std::nullopt;
   }
   std::ranges::transform(found.columns, header.columns.begin(), [](const auto& column) { return *column; });
-  header.exponent = ExponentOf(of_names[header.columns[kStamp]]);
+  header.exponent = exponents[header.columns[kStamp]];
   if (HasAny(line, {"field.", "q_RS_w"})) header.exponent = -9;  // `rostopic echo -p`, EuRoC
   return header;
 }

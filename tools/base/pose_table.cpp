@@ -44,7 +44,7 @@ std::string OtherKind(std::string_view line, const std::vector<Word>& words, con
   const bool are_numbers = std::ranges::all_of(words, IsNumber);
   if (words.size() == kKitti && are_numbers)
     return "twelve numbers a line are KITTI's poses, which have no times: add them, and quaternions";
-  if ((words.size() == kMatrix || words.size() == kMatrix + 1) && are_numbers)
+  if (words.size() == kMatrix && are_numbers)
     return "sixteen numbers a line are matrices: write a time and a quaternion (timestamp tx ty tz qx qy qz qw)";
   if (words.size() == kColmap && !IsDigit(words.back().text.back()))
     return "is COLMAP's images.txt, whose poses have no times and map the world to the camera: convert it";

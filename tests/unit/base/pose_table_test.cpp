@@ -76,6 +76,8 @@ TEST(PoseTable, NanosecondsWhereTheTableHasThem) {
     EXPECT_THAT(LastOf(text), ElementsAre("75e-9", "1", "2", "3", "4", "5", "6", "9")) << text;
   }
   EXPECT_EQ(LastOf("#t [ns],x,y,z,qw,qx,qy,qz\n1.5e+18,1,2,3,9,4,5,6").at(0), "1.5e9");
+  EXPECT_EQ(LastOf("#t [ns] x y z qx qy qz qw\n1403636580838555648.000000 1 2 3 4 5 6 9").at(0),
+            "1403636580838555648.000000e-9");
   EXPECT_EQ(LastOf("#t [ms],x,y,z,qw,qx,qy,qz\n12.5,1,2,3,9,4,5,6").at(0), "12.5e-3");
   EXPECT_EQ(LastOf("#t [ns],x,y,z,qw,qx,qy,qz\n12.5,1,2,3,9,4,5,6").at(0), "12.5") << "seconds, the header kept";
   EXPECT_EQ(LastOf("%time x y z qx qy qz qw\n75 1 2 3 4 5 6 9").at(0), "75") << "a comment of MATLAB's";
@@ -94,7 +96,7 @@ TEST(PoseTable, RefusesOtherKindsByTheFirstRow) {
            {"# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n1 1 0 0 0 1 2 3 1 a.png", "COLMAP"},
            {"2014-06-24T19:03:00 1 2 3 0 0 0 1", "is not a time in seconds"},
            {"1403636579763555584,1,2,3", "4 columns where 8 are expected"},
-           {"1.5,1,2,3,0,0,0,1,0,0,0,0,0,0,0,0,0", "sixteen numbers"},
+           {"1.5,1,2,3,0,0,0,1,0,0,0,0,0,0,0,0,0", "17 columns"},
            {"1.5 1 2 3 0 0 0 1 0 0 0 a", "12 columns"},
            {"{", "is JSON"},
            {"#ROSBAG V2.0", "is a ROS bag"},

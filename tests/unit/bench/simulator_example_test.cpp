@@ -6,7 +6,7 @@
 #include "sim/simulator.h"
 #include "tools/judge/evaluation/summary.h"
 
-// Whatever you want to test. This one says that it stands still.
+// Whatever you want to test. This one answers the identity pose.
 struct MyOdometry {
   evaluation::StampedPose Track(std::int64_t stamp_ns, const sim::Image&) { return {.stamp_ns = stamp_ns}; }
 };
