@@ -298,7 +298,7 @@ TEST_F(CampaignTest, EntriesAreCheckedBeforeAnythingRuns) {
   EXPECT_EQ(bad.err.find("there is no system"), std::string::npos) << "nobody knows that before it can be read";
   EXPECT_FALSE(fs::exists(here_ / "out"));
   // A lens that the calibration format cannot represent: the task fails with this reason.
-  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, calibration: svo, command: \"x {calibration}\"}\n");
+  WriteFile(here_ / "systems.yaml", "systems:\n  - {name: a, calibration: svo, command: \"cat {calibration}\"}\n");
   std::string text = CampaignOf("[a]");
   text.replace(text.find("time.duration"), 0, "camera.distortion.k3: 0.01, ");
   const Outcome lens = Run(text, "out");
