@@ -112,7 +112,7 @@ std::string_view NextWord(std::string_view& rest) {
 }
 
 std::optional<double> ToNumber(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  text = base::WithoutPlus(text);
   double value = 0;
   const char* const all = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), all, value);

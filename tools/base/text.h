@@ -41,6 +41,10 @@ std::string Fixed(double value, int decimals);
 // "%.*g": a number of significant digits, without trailing zeros.
 std::string Significant(double value, int digits);
 
+// Without its plus sign, which the parsers do not take.
+inline std::string_view WithoutPlus(std::string_view number) {
+  return number.starts_with('+') && !number.starts_with("+-") ? number.substr(1) : number;
+}
 // A decimal integer, or number ("inf" and "nan" are some, "1e999" is none), that is all of the text. No plus sign.
 std::optional<std::int64_t> ParseWhole(std::string_view text);
 std::optional<double> ParseNumber(std::string_view text);

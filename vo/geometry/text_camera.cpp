@@ -56,11 +56,7 @@ std::vector<Line> DataLines(std::string_view text) {
   return lines;
 }
 
-// A number, perhaps with a plus sign.
-std::optional<double> Number(std::string_view text) {
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
-  return base::ParseNumber(text);
-}
+std::optional<double> Number(std::string_view text) { return base::ParseNumber(base::WithoutPlus(text)); }
 
 bool IsNumber(const base::Word& word) { return Number(word.text).has_value(); }
 

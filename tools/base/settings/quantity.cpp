@@ -8,6 +8,8 @@
 #include <span>
 #include <system_error>
 
+#include "tools/base/text.h"
+
 namespace settings {
 namespace {
 
@@ -70,10 +72,6 @@ std::string_view Trim(std::string_view text) {
   return text;
 }
 
-std::string_view WithoutPlus(std::string_view number) {
-  return number.starts_with('+') && !number.starts_with("+-") ? number.substr(1) : number;
-}
-
 bool IsNotFinite(std::string_view text) {
   if (!text.empty() && (text.front() == '-' || text.front() == '+')) text.remove_prefix(1);
   if (!text.empty() && text.front() == '.') text.remove_prefix(1);  // YAML writes .nan, .inf
@@ -96,7 +94,7 @@ bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double&
     return false;
   };
   if (IsNotFinite(Trim(text))) return fail(" is not a finite number");
-  const std::string_view digits = WithoutPlus(Trim(text));
+  const std::string_view digits = base::WithoutPlus(Trim(text));
   double number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (error == std::errc::result_out_of_range) return fail(" is out of the range of numbers");
@@ -112,7 +110,7 @@ bool ParseQuantity(std::string_view text, Unit unit, const Range& range, double&
 }
 
 bool SplitQuantity(std::string_view text, double& number, std::string& unit) {
-  const std::string_view digits = WithoutPlus(Trim(text));
+  const std::string_view digits = base::WithoutPlus(Trim(text));
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   const std::string_view suffix = Trim(digits.substr(static_cast<std::size_t>(end - digits.data())));
   unit = suffix.empty() ? "" : " " + std::string(suffix);
@@ -125,7 +123,7 @@ bool ParseInteger(std::string_view text, const Range& range, T& value, std::stri
     problem = Quoted(text).append(what);
     return false;
   };
-  const std::string_view digits = WithoutPlus(Trim(text));
+  const std::string_view digits = base::WithoutPlus(Trim(text));
   T number = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   const bool complete = end == digits.data() + digits.size() && !digits.empty();

@@ -75,8 +75,7 @@ void Lines::Advance() {
 }
 
 std::optional<double> ParseNumber(const std::string& text) {
-  const bool plus = text.starts_with('+') && !text.starts_with("+-");
-  const std::optional<double> value = base::ParseNumber(std::string_view(text).substr(plus ? 1 : 0));
+  const std::optional<double> value = base::ParseNumber(base::WithoutPlus(text));
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
