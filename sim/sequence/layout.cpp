@@ -196,11 +196,11 @@ std::string AccelerationLine(std::int64_t stamp_ns, const Truth& t) {
               {t.a_WC.x, t.a_WC.y, t.a_WC.z, t.alpha_WC_C.x, t.alpha_WC_C.y, t.alpha_WC_C.z});
 }
 
-std::string CameraYaml(const CameraParams& c, double readout_s) {
+std::string CameraYaml(const CameraParams& c, std::optional<double> readout_s) {
   const auto number = settings::FormatNumber;
   return "width: " + std::to_string(c.width) + "\nheight: " + std::to_string(c.height) + "\nfx: " + number(c.fx) +
          "\nfy: " + number(c.fy) + "\ncx: " + number(c.cx) + "\ncy: " + number(c.cy) +
-         "\ndistortion: " + Distortion(c) + "\n" + "rolling_shutter: " + number(readout_s) + " s\n";
+         "\ndistortion: " + Distortion(c) + "\n" + (readout_s ? "rolling_shutter: " + number(*readout_s) + " s\n" : "");
 }
 
 std::string ToString(Layout layout) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -61,7 +62,7 @@ std::string AccelerationLine(std::int64_t stamp_ns, const Truth& truth);
 std::string ExposureLine(std::int64_t stamp_ns, const ExposureSetting& setting);
 // "position: [x, y, z]" and "orientation: [x, y, z, w]".
 std::string PlaceYaml(const Pose& pose, const std::string& between);
-// readout_s: of the rolling shutter, 0: none.
-std::string CameraYaml(const CameraParams& camera, double readout_s);
+// readout_s: of the rolling shutter, 0: a global one; none: not stated.
+std::string CameraYaml(const CameraParams& camera, std::optional<double> readout_s);
 
 }  // namespace sim

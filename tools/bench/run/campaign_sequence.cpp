@@ -96,8 +96,8 @@ void Link(const campaign::SequenceCache& cache, const std::string& key, const Se
     list += base::FormatSeconds(frame.stamp_ns) + " " + name(frame) + "\n";
   }
   const sim::Scenario& scenario = recording.experiment.scenario;
-  std::string camera = sim::CameraYaml(scenario.camera, scenario.sensor.readout_s);
-  if (scenario.sensor.readout_s == 0) camera.erase(camera.find("rolling_shutter"));  // none, or unknown
+  const double readout_s = scenario.sensor.readout_s;  // 0: none, or unknown
+  const std::string camera = sim::CameraYaml(scenario.camera, readout_s == 0 ? std::nullopt : std::optional(readout_s));
   base::WriteFile(partial / "rgb.txt", list);
   base::WriteFile(partial / "camera.yaml", camera);
   if (recording.sensors.metric()) AddRecorded(partial, recording.frames, recording.beside_first);

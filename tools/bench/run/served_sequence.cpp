@@ -151,8 +151,7 @@ ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& ke
     served.folder += std::string(".rectified") + kVersion;
     MakeOnce(cache, key, served.folder, [&](const fs::path& partial) {
       WriteRectified(original, partial, camera, served.camera);
-      std::string text = sim::CameraYaml(served.camera, 0);
-      base::WriteFile(partial / "camera.yaml", text.erase(text.find("rolling_shutter")));  // its rows are others
+      base::WriteFile(partial / "camera.yaml", sim::CameraYaml(served.camera, std::nullopt));  // its rows are others
     });
   }
   const vo::SequenceReader reader(served.folder);
@@ -193,13 +192,11 @@ ServedSequence Serve(const campaign::SequenceCache& cache, const std::string& ke
       WriteTimes(partial / "times.txt", frames, original / "exposure.txt", rendered ? &scenario.sensor : nullptr);
       if (rendered) WritePhotometricCalibration(partial, scenario, exact);
     }
-    std::string text = base::ReadFile(tum / "camera.yaml").value_or("");
-    const bool with_shutter = text.find("rolling_shutter") != std::string::npos;
-    if (focal_error != 0) text = sim::CameraYaml(served.camera, scenario.sensor.readout_s);
-    // Ours is not given it either where it has the images alone.
-    if (text.find("rolling_shutter") != std::string::npos && (rendered || !with_shutter))
-      text.erase(text.find("rolling_shutter"));
-    base::WriteFile(partial / "camera.yaml", text);
+    // Ours is not given the shutter's time of a rendered sequence either where it has the images alone.
+    const bool with_shutter =
+        !rendered && base::ReadFile(tum / "camera.yaml").value_or("").find("rolling_shutter") != std::string::npos;
+    const auto readout_s = with_shutter ? std::optional(scenario.sensor.readout_s) : std::nullopt;
+    base::WriteFile(partial / "camera.yaml", sim::CameraYaml(served.camera, readout_s));
   });
   return served;
 }
