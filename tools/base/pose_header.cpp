@@ -54,14 +54,18 @@ std::optional<std::size_t> AxisOf(const std::string& name) {
   return is_position ? std::optional(1 + axis) : std::nullopt;
 }
 
+// The part below a second of a stamp in two columns.
+bool IsNanoseconds(std::string_view name) { return EndsInAny(name, {"nsec", "nsecs", "nanosec"}); }
+
 // Rank of a name as that of the stamps; 0: it is none. That of a message's header comes before the time of its arrival,
 // and both before whole seconds.
 int RankAsStamp(const std::string& name) {
-  if (EndsInAny(name, {"nsec", "nsecs", "nanosec"})) return 0;
+  if (IsNanoseconds(name)) return 0;
   if (EndsInAny(name, {"sec", "secs", "seconds"})) return 1;
   return HasAny(name, {"stamp"}) ? 3 : name == "t" || HasAny(name, {"time"}) ? 2 : 0;
 }
 
+// Of the unit that a column's name states, in powers of ten; 0: none, or seconds.
 int ExponentOf(std::string_view cell) {
   std::string text(cell);
   std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -84,9 +88,7 @@ struct Named {
 Named Assign(std::span<const std::string> names) {
   Named found;
   int rank = 0;
-  const bool split_stamp = std::ranges::any_of(names, [](const std::string& name) {
-    return EndsInAny(name, {"nsec", "nsecs", "nanosec"});
-  });
+  const bool split_stamp = std::ranges::any_of(names, IsNanoseconds);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (const int r = RankAsStamp(names[i]); r > rank && !(r == 1 && split_stamp)) {
       found.columns[kStamp] = i;

@@ -9,6 +9,9 @@ namespace {
 // Columns of a pose alone, and of the tables of other programs. VINS: a velocity follows.
 constexpr std::size_t kPose = PoseHeader::kPose, kColmap = 10, kKitti = 12, kMatrix = 16, kEuroc = 17, kOpenVins = 20;
 
+constexpr const char* kOfColmap =
+    "is COLMAP's images.txt, whose poses have no times and map the world to the camera: convert it";
+
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool IsNumber(const Word& word) { return ParseNumber(word.text).has_value(); }
 
@@ -28,9 +31,7 @@ std::string KindOf(std::string_view line) {
       {"<", "is XML or HTML: write its poses as a table"}};
   for (const auto& [begin, kind] : kinds)
     if (line.starts_with(begin)) return kind;
-  if (line.starts_with('#') && line.find("IMAGE_ID") != std::string_view::npos)
-    return "is COLMAP's images.txt, whose poses have no times and map the world to the camera: convert it";
-  return "";
+  return line.starts_with('#') && line.find("IMAGE_ID") != std::string_view::npos ? kOfColmap : "";
 }
 
 // Problem of a file, by its first row; empty: none.
@@ -46,8 +47,7 @@ std::string OtherKind(std::string_view line, const std::vector<Word>& words, con
     return "twelve numbers a line are KITTI's poses, which have no times: add them, and quaternions";
   if (words.size() == kMatrix && are_numbers)
     return "sixteen numbers a line are matrices: write a time and a quaternion (timestamp tx ty tz qx qy qz qw)";
-  if (words.size() == kColmap && !IsDigit(words.back().text.back()))
-    return "is COLMAP's images.txt, whose poses have no times and map the world to the camera: convert it";
+  if (words.size() == kColmap && !IsDigit(words.back().text.back())) return kOfColmap;
   if (const std::string unit = UnitOfStamp(stamp); !unit.empty() && words.size() >= kPose) {
     const bool may_be_csv = line.find(',') != std::string_view::npos;
     return "'" + first + "' is not a time in seconds" + unit +
@@ -75,7 +75,7 @@ std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
     if (is_first_ && problem.empty() && !header_) header_ = ReadPoseHeader(line, problem);
     return {};
   }
-  // Twelve decimals are no stamp of EuRoC's.
+  // EuRoC's table without its header: its stamps are whole numbers.
   if (is_first_ && !header_ && words.size() == kEuroc && ParseWhole(words[0].text)) is_euroc_ = true;
   words = InOrder(std::move(words), problem);
   if (is_first_ && problem.empty()) problem = OtherKind(line, words, Stamp(words[0]));
@@ -109,12 +109,11 @@ std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& probl
 
 std::string PoseTable::Stamp(const Word& word) const {
   const std::string text(word.text);
-  // A header may keep EuRoC's unit where the stamps are seconds.
-  const bool may_be_ns =
-      ParseWhole(text) || text.find_first_of("eE") != std::string::npos || !UnitOfStamp(text).empty();
   const int exponent = header_ && header_->exponent != 0 ? header_->exponent : is_euroc_ && ParseWhole(text) ? -9 : 0;
-  if (exponent == 0 || (exponent == -9 && !may_be_ns)) return text;
+  if (exponent == 0) return text;
   const std::size_t e = std::min(text.find_first_of("eE"), text.size());
+  // A header may keep EuRoC's unit where the stamps are seconds.
+  if (exponent == -9 && e == text.size() && !ParseWhole(text) && UnitOfStamp(text).empty()) return text;
   const std::size_t digits = std::min(text.find_first_not_of("eE+", e), text.size());
   const std::int64_t own = ParseWhole(std::string_view(text).substr(digits)).value_or(0);
   return text.substr(0, e) + "e" + std::to_string(own + exponent);
