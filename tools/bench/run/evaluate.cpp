@@ -7,6 +7,7 @@
 #include "tools/bench/result/metrics_json.h"
 #include "tools/bench/result/result.h"
 #include "tools/bench/run/commands.h"
+#include "tools/bench/run/run_common.h"
 #include "tools/bench/sequence/sequence_truth.h"
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/summary.h"
@@ -117,12 +118,9 @@ void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Me
                 evaluation::Alignment alignment) {
   const auto warn = [](std::string_view what) { fmt::print(stderr, "vobench: warning: {}\n", what); };
   const bool fitted = alignment != evaluation::Alignment::none && alignment != evaluation::Alignment::first;
-  if (errors.pairs < 3 && alignment != evaluation::Alignment::none) {
-    throw BadInput(fmt::format(
-        "{} of the poses have a true one within {:.0f} ms: fewer than three determine no alignment; are the stamps of "
-        "both in seconds of one clock?",
-        errors.pairs, static_cast<double>(metrics.options.association.gap_ns) * 1e-6));
-  }
+  if (const std::string problem = AlignmentProblem(metrics);
+      !problem.empty() && alignment != evaluation::Alignment::none)
+    throw BadInput(problem);
   if (!fitted) return;
   const evaluation::Ate& ate = errors.Aligned(alignment);
   if (alignment == evaluation::Alignment::sim3 && !ate.similarity.scale_determined)

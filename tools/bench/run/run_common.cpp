@@ -49,6 +49,14 @@ void ForEach(std::size_t count, int jobs, const std::function<void(std::size_t)>
   tbb::task_arena(jobs).execute([&] { tbb::parallel_for(std::size_t{0}, count, task, tbb::simple_partitioner()); });
 }
 
+std::string AlignmentProblem(const evaluation::Metrics& metrics) {
+  if (metrics.errors.pairs >= 3) return "";
+  return fmt::format(
+      "{} of the poses have a true one within {:.0f} ms: fewer than three determine no alignment; are the stamps of "
+      "both in seconds of one clock?",
+      metrics.errors.pairs, static_cast<double>(metrics.options.association.gap_ns) * 1e-6);
+}
+
 void Report(const ReportOptions& options) {
   // Read here first, to distinguish a faulty folder from a report that cannot be written.
   Input([&] { return ReadRunJson(options.output); });

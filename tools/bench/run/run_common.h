@@ -41,6 +41,9 @@ vo::Camera CameraOfSequence(const std::filesystem::path& sequence, const std::op
 // Camera and settings of a tracked sequence, as JSON.
 std::string RecordOfTracking(const vo::Camera& camera, const std::string& settings);
 
+// Why too few poses have a true one to determine an alignment; empty: there are three or more.
+std::string AlignmentProblem(const evaluation::Metrics& metrics);
+
 // Runs on worlds of points: each run has its own, seeded like its filter. Called by Run.
 void RunOnPoints(const RunOptions& options, const Experiment& experiment, const Clock& clock);
 

@@ -39,13 +39,9 @@ Experiment ReadSettings(const TrackOptions& options) {
 }
 
 // Throws where Sim(3) has no basis: its error would be 0 or that of another alignment.
-void RequireBasis(const evaluation::TrajectoryErrors& errors) {
-  if (errors.pairs < 3)
-    throw evaluation::InputError(
-        {fmt::format("{} of the poses {} a true one at its time: fewer than three determine no "
-                     "alignment; are the stamps of both of one clock?",
-                     errors.pairs, errors.pairs == 1 ? "has" : "have")});
-  if (!errors.sim3.similarity.scale_determined)
+void RequireBasis(const evaluation::Metrics& metrics) {
+  if (const std::string problem = AlignmentProblem(metrics); !problem.empty()) throw evaluation::InputError({problem});
+  if (!metrics.errors.sim3.similarity.scale_determined)
     throw evaluation::InputError({"the true or the estimated positions do not move: Sim(3) has no scale"});
 }
 
@@ -149,7 +145,7 @@ void Track(const TrackOptions& options) {
   if (truth) {
     try {
       auto judged = evaluation::JudgeSeries(run.run, truth->poses, truth->velocities, JudgeOptionsOf(settings.prior));
-      RequireBasis(judged.metrics.errors);
+      RequireBasis(judged.metrics);
       run.judged = std::move(judged);
       WriteTruth(out.path(), truth->poses, truth->velocities);
     } catch (const evaluation::InputError& error) {  // of another time: the estimate is kept all the same
