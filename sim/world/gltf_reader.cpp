@@ -14,6 +14,7 @@
 
 #include "sim/world/gltf_file.h"
 #include "sim/world/gltf_material.h"
+#include "sim/world/gltf_vertices.h"
 #include "sim/world/mesh_builder.h"
 #include "sim/world/mesh_readers.h"
 
@@ -166,7 +167,13 @@ class GltfReader {
     };
     append(*positions, mesh.positions);
     if (const auto normals = table("NORMAL", 3)) append(*normals, mesh.normals);
-    if (!joints.empty()) Pose(table, joints, mesh);
+    std::vector<JointWeights> weights;
+    for (const std::string set : {"_0", "_1"}) {
+      if (joints.empty()) break;
+      auto of = table("JOINTS" + set, 4), by = table("WEIGHTS" + set, 4);
+      if (of && by) weights.push_back({std::move(*of), std::move(*by)});
+    }
+    if (!joints.empty()) PoseVertices(weights, joints, mesh);
     if (const auto colors = table("COLOR_0", 3)) {
       const json& accessor = file_.At("accessors", GltfFile::Index(attributes, "COLOR_0"));
       const int type = accessor.value("componentType", 0);
@@ -195,7 +202,7 @@ class GltfReader {
     AppendTriangles(indices, mode, mesh);
     const UvChoice& uv = import_.scene.materials[mesh.material].normal_map.uv;
     if (import_.scene.materials[mesh.material].normal_map.picture.empty() || uv.channel >= mesh.uvs.size()) return;
-    if (const auto tangents = table("TANGENT", 4); tangents && Contradicts(*tangents, mesh, uv))
+    if (const auto tangents = table("TANGENT", 4); tangents && ContradictsUvs(*tangents, mesh, uv))
       Warn("has tangents that are not those of the texture coordinates: normal maps follow the coordinates");
   }
 
@@ -219,50 +226,6 @@ class GltfReader {
       joints.back() *= inverse;
     }
     return joints;
-  }
-
-  // Moves vertices to where their joints stand.
-  template <class Table>
-  static void Pose(const Table& table, const std::vector<glm::dmat4>& joints, ImportedMesh& mesh) {
-    std::vector<glm::dmat4> sums(mesh.positions.size(), glm::dmat4(0));
-    for (const std::string set : {"_0", "_1"}) {
-      const auto which = table("JOINTS" + set, 4), weights = table("WEIGHTS" + set, 4);
-      for (std::size_t k = 0; which && weights && k < 4 * which->count; ++k) {
-        const float joint = which->at(k / 4, k % 4), weight = weights->at(k / 4, k % 4);
-        if (weight == 0) continue;
-        if (!(joint >= 0 && joint < static_cast<float>(joints.size())))
-          throw std::runtime_error("a vertex names a joint that does not exist");
-        sums[k / 4] += static_cast<double>(weight) * joints[static_cast<std::size_t>(joint)];
-      }
-    }
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      const glm::dmat4 posed = sums[i][3][3] > 0 ? sums[i] / sums[i][3][3] : joints[0];  // the weights' sum is 1 or 0
-      mesh.positions[i] = posed * glm::dvec4(mesh.positions[i], 1);
-      if (!mesh.normals.empty())
-        mesh.normals[i] = glm::transpose(glm::inverse(glm::dmat3(posed))) * glm::dvec3(mesh.normals[i]);
-    }
-  }
-
-  // Whether tangents differ from those of texture coordinates by more than 60 degrees, or in their side, on most
-  // triangles.
-  static bool Contradicts(const GltfTable& tangents, const ImportedMesh& mesh, const UvChoice& choice) {
-    const std::vector<glm::vec2>& uvs = mesh.uvs[choice.channel];
-    std::size_t against = 0;
-    for (const glm::uvec3& t : mesh.triangles) {
-      if (std::max({t.x, t.y, t.z}) >= uvs.size()) continue;
-      const glm::dmat3x2 transform = choice.transform;
-      const auto at = [&](unsigned i) { return transform * glm::dvec3(uvs[i].x, 1 - uvs[i].y, 1); };
-      const glm::dvec2 a = at(t.y) - at(t.x), b = at(t.z) - at(t.x);
-      const glm::dvec3 p = mesh.positions[t.y] - mesh.positions[t.x], q = mesh.positions[t.z] - mesh.positions[t.x];
-      const double area = b.x * a.y - a.x * b.y;  // of the texture, v up
-      const glm::dvec3 own = (q * a.y - p * b.y) * (area < 0 ? -1.0 : 1.0);
-      glm::dvec4 given(0);
-      for (const unsigned i : {t.x, t.y, t.z})
-        given += glm::dvec4(tangents.at(i, 0), tangents.at(i, 1), tangents.at(i, 2), tangents.at(i, 3));
-      const double along = glm::dot(own, glm::dvec3(given));
-      if (along < 0.5 * glm::length(own) * glm::length(glm::dvec3(given)) || given.w * area < 0) ++against;
-    }
-    return 2 * against > mesh.triangles.size();
   }
 
   static void AppendTriangles(const std::vector<std::uint32_t>& indices, int mode, ImportedMesh& mesh) {

@@ -5,6 +5,7 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/gltf_file.cpp
   ${CMAKE_CURRENT_LIST_DIR}/gltf_material.cpp
   ${CMAKE_CURRENT_LIST_DIR}/gltf_reader.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/gltf_vertices.cpp
   ${CMAKE_CURRENT_LIST_DIR}/image_file.cpp
   ${CMAKE_CURRENT_LIST_DIR}/imported_scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/labels.cpp
