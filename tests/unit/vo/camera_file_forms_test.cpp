@@ -7,6 +7,7 @@
 #include <fstream>
 #include <vector>
 
+#include "tests/temporary_folder.h"
 #include "vo/geometry/camera_file.h"
 
 namespace {
@@ -22,18 +23,6 @@ struct Case {
 
 class CameraFileForms : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) /
-              ("camera_file_forms_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path Write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
-  }
   static std::string ErrorOf(const std::string& camera) {
     try {
       vo::CameraFrom(camera);
@@ -47,7 +36,7 @@ class CameraFileForms : public testing::Test {
   void Expect(const std::vector<Case>& cases, double k1 = -0.25, vo::Lens lens = vo::Lens::radial_tangential) const {
     for (const Case& each : cases) {
       SCOPED_TRACE(each.name + ":\n" + each.text);
-      const std::string error = ErrorOf(Write(each.name, each.text).string());
+      const std::string error = ErrorOf(folder_.Write(each.name, each.text).string());
       EXPECT_EQ(std::ranges::count(error, '\n'), 0) << error;
       EXPECT_THAT(error, each.words.empty() ? testing::Matcher<std::string>("") : HasSubstr(each.words));
       if (!each.words.empty() || !error.empty()) continue;
@@ -58,7 +47,7 @@ class CameraFileForms : public testing::Test {
     }
   }
 
-  fs::path folder_;
+  vobench_test::TemporaryFolder folder_;
 };
 
 const std::string kMatrix = "[458.5, 0, 367.25, 0, 457.25, 248.375, 0, 0, 1]", kLens = "[-0.25, 0.07, 0.0001, 2e-05]",
@@ -210,13 +199,13 @@ TEST_F(CameraFileForms, NumbersThatNoCameraHas) {
 }
 
 TEST_F(CameraFileForms, NamesOfNoFile) {
-  EXPECT_THAT(ErrorOf(folder_.string()), EndsWith("is a folder: give the calibration file in it"));
+  EXPECT_THAT(ErrorOf(folder_.path().string()), EndsWith("is a folder: give the calibration file in it"));
   EXPECT_EQ(ErrorOf("nowhere.yaml"), "there is no file 'nowhere.yaml'");
   EXPECT_EQ(ErrorOf("no/where"), "there is no file 'no/where'");
   EXPECT_THAT(ErrorOf(""), HasSubstr("unknown camera preset ''"));
   const fs::path here = fs::current_path();
   fs::create_directory(folder_ / "icl");
-  fs::current_path(folder_);
+  fs::current_path(folder_.path());
   EXPECT_EQ(ErrorOf("icl"), "");  // the preset, not the folder
   fs::current_path(here);
 }

@@ -111,8 +111,7 @@ void RunAttack(const BenchOptions& options, const BenchFile& bench) {
   scenario += base::ReadFile(options.output / (last + ".yaml")).value_or("");
   base::WriteFile(options.output / "attack.yaml", scenario);
   const std::string& system = attack.steps().system();
-  const std::vector<std::string> ours = SystemNames();
-  const bool is_ours = std::ranges::find(ours, system) != ours.end();
+  const bool is_ours = std::ranges::count(SystemNames(), system) > 0;
   const std::string one_world = is_ours ? fmt::format("; or one world of it:\n\n    vobench run {}{} --system {}",
                                                       bench.attack.front().file.string(), flags, system)
                                         : "";

@@ -91,7 +91,7 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
     }
     const double nees = MedianOf(records, system, "nees_pose_per_dof"), ate = MedianOf(records, system, "ate_m"),
                  coverage = MedianOf(records, system, "pose_coverage");
-    const std::string of_few = coverage < 0.95 ? fmt::format(" @ {:.0f} % of the frames", 100 * coverage) : "";
+    const std::string of_few = coverage < kFewPoses ? fmt::format(" @ {:.0f} % of the frames", 100 * coverage) : "";
     const std::string how = evaluation::Name(AlignmentOf(campaign, campaign.systems[s]));
     html += "<h2 class=\"system\">" + report::Key(s) +
             Escape(Label(campaign.systems[s].external, DisplayName(system))) + "</h2>" +

@@ -13,13 +13,16 @@
 
 namespace vobench::campaign {
 
+// Pose coverage below which an error has it beside it.
+constexpr double kFewPoses = 0.95;
+
 // One cell: quartiles over runs, a lost one counted as worse than any number.
 struct Cell {
   std::size_t runs = 0, failed = 0;      // runs: all but the failed
   double low = 0, median = 0, high = 0;  // infinite where it falls on a lost run; NaN without runs
   // Median pose coverage behind an error, of systems that write all frames; NaN where there is none.
   double coverage = std::numeric_limits<double>::quiet_NaN();
-  bool few_poses() const { return coverage < 0.95 && std::isfinite(median); }  // shown beside the number
+  bool few_poses() const { return coverage < kFewPoses && std::isfinite(median); }  // shown beside the number
 };
 
 struct Table {
