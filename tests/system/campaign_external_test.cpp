@@ -115,9 +115,12 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
                 "  - {name: forgiven, accept_exit: any, command: \"" +
                 poses +
                 " | head -9 > {trajectory}; exit 139\"}\n"
+                "  - {name: later, command: \"" +
+                poses +
+                " | sed '12s/^[^ ]*/99.5/' > {trajectory}\"}\n"
                 "  - {name: skips_three, command: \"tail -n +4 {sequence}/rgb.txt | wc -l; " +
                 poses + " > {trajectory}\"}\n");
-  MustRun(CampaignOf("[key, few, nan, ns, ends, at_exit, forgiven, skips_three]") + "keep: all\n", "out");
+  MustRun(CampaignOf("[key, few, nan, ns, ends, at_exit, forgiven, later, skips_three]") + "keep: all\n", "out");
   auto rows = BySystem(Results("out"));
   EXPECT_EQ(rows["key"]["status"], "ok") << "judged at its stamps";
   EXPECT_EQ(rows["key"]["pose_coverage"], "0.25") << "and this is said";
@@ -137,7 +140,8 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
   EXPECT_EQ(rows["forgiven"]["status"], "ok");
   EXPECT_EQ(rows["forgiven"]["reason"],
             "ended by signal 11 (Segmentation fault), accepted; no pose after the first 9 of 12 frames");
-  EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000007/log.txt"), "12\n") << "three comments, as TUM's lists have";
+  EXPECT_EQ(rows["later"]["reason"], "poses at no frame's time: 1");
+  EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000008/log.txt"), "12\n") << "three comments, as TUM's lists have";
   EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000000/work/trajectory.txt"));
   EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000005/work/trajectory.txt"));
   const std::string tables = ReadFile(here_ / "out/tables.md");

@@ -30,6 +30,28 @@ TEST(Video, IsTrackedFrameByFrame) {
   EXPECT_FALSE(std::filesystem::exists(here / "other"));
 }
 
+// The second half of the pictures is erased; the index that announces them is there.
+TEST(Video, WarnsOfFramesThatCannotBeRead) {
+  const TemporaryFolder here;
+  ASSERT_EQ(
+      RunVobench({"render", TinyScenario().string(), "-o", "s", "--frames", "0:12", "--preview"}, here.path()).status,
+      0);
+  const auto track = [&](const char* video, const char* output) {
+    return RunVobench({"track", video, "-o", output, "--camera", "s/camera.yaml"}, here.path());
+  };
+  EXPECT_EQ(track("s/preview.mp4", "whole").err.find("announces"), std::string::npos);
+  std::string bytes = ReadFile(here / "s/preview.mp4");
+  const std::size_t pictures = bytes.find("mdat"), index = bytes.find("moov");
+  ASSERT_NE(pictures, std::string::npos);
+  const std::size_t end = index > pictures ? index - 4 : bytes.size();
+  std::fill(bytes.begin() + static_cast<std::ptrdiff_t>((pictures + end) / 2),
+            bytes.begin() + static_cast<std::ptrdiff_t>(end), '\0');
+  WriteFile(here / "damaged.mp4", bytes);
+  const Outcome outcome = track("damaged.mp4", "half");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::ContainsRegex("warning: [0-9]+ frames could be read of the 12 that the video"));
+}
+
 // Live stream without an end: at any moment Ctrl-C ends it, and the frames tracked so far are the result.
 TEST(Video, CtrlCEndsALiveOneAndTheResultIsWritten) {
   const TemporaryFolder here;

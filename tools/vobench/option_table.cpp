@@ -365,6 +365,9 @@ OptionTable::OptionTable()
   app.formatter_fn([](const CLI::App* command, std::string, CLI::AppFormatMode) { return HelpText(*command); });
   app.set_help_flag("-h,--help", "Show this help and exit");
   app.set_version_flag("--version", "vobench " VOBENCH_VERSION, "Which vobench this is");
+  app.failure_message([](const CLI::App* command, const CLI::Error& e) {
+    return "vobench: " + CLI::FailureMessage::simple(command, e);
+  });
   app.require_subcommand(1);
   app.footer(
       "`vobench COMMAND --help` has more. Exit status: 0 done, 1 the work failed or `verify` found a disagreement, "

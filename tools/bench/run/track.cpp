@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -61,6 +63,18 @@ void RequireSize(const vo::Frame& frame, const vo::Camera& camera, const TrackOp
                   "this size with --camera",
                   CalibrationOf(options.sequence, options.camera), camera.width, camera.height,
                   options.sequence.string(), frame.image.cols, frame.image.rows));
+}
+
+// `announced`: frames of the sequence, by a video's header, which may be wrong by a few.
+std::vector<std::string> WarningsOf(const RunEntry& run, std::size_t frames, std::optional<std::int64_t> announced) {
+  std::vector<std::string> warnings;
+  const auto read = static_cast<std::int64_t>(frames);
+  if (announced && read < *announced - std::max<std::int64_t>(1, *announced / 100))
+    warnings.push_back(
+        fmt::format("{} frames could be read of the {} that the video's header announces", read, *announced));
+  const std::string calibration = run.calibration ? CalibrationWarning(*run.calibration) : "";
+  if (!calibration.empty()) warnings.push_back(calibration);
+  return warnings;
 }
 
 }  // namespace
@@ -153,8 +167,8 @@ void Track(const TrackOptions& options) {
       fmt::print(stderr, "vobench: not judged: {}\n", error.what());
     }
   }
-  const std::string warning = run.entry.calibration ? CalibrationWarning(*run.entry.calibration) : "";
-  if (!warning.empty()) description.notes.push_back("Warning: " + warning);
+  const std::vector<std::string> warnings = WarningsOf(run.entry, tracker.frames(), frames);
+  for (const std::string& warning : warnings) description.notes.push_back("Warning: " + warning);
   description.seconds = clock.seconds();
   description.settings = RecordOfTracking(camera, settings.resolved);
   description.versions = Versions();
@@ -164,10 +178,8 @@ void Track(const TrackOptions& options) {
 
   fmt::print("{}{}{}The report is in {}\n", TextSummary(result.Metrics()), TimeTable(run.run.frames, elapsed_s),
              match_errors ? match_errors->Table() : "", (options.output / "report.html").string());
-  if (run.entry.calibration) {
-    fmt::print("{}", CalibrationSummary(*run.entry.calibration));
-    if (!warning.empty()) fmt::print(stderr, "vobench: warning: {}\n", warning);
-  }
+  if (run.entry.calibration) fmt::print("{}", CalibrationSummary(*run.entry.calibration));
+  for (const std::string& warning : warnings) fmt::print(stderr, "vobench: warning: {}\n", warning);
   if (end) std::rethrow_exception(end);
 }
 
