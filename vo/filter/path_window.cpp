@@ -1,6 +1,7 @@
 #include "vo/filter/path_window.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -110,7 +111,7 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   problem.step.setZero(equations_.linearisation().Row(prior.size()));
   Descent descent(options.max_iterations, options.tolerance_sigma, options.stop_if_above);
   MinimiseToMode(problem, descent);
-  SetCovariance(path);
+  if (!(path.objective >= options.stop_if_above)) SetCovariance(path);
   path.events.not_converged = !descent.converged();
   if (llt_.info() != Eigen::Success) {
     path.events.not_positive_definite = 1;
@@ -118,18 +119,23 @@ void PathWindow::Solve(const PathPrior& prior, const WindowInput& in, std::span<
   }
 }
 
-// Of the poses, the rates integrated out.
+// Of the poses, the rates integrated out: X'X with X = the poses' columns of L^-1, which are zero above their own rows.
 void PathWindow::SetCovariance(PathGaussian& path) {
+  constexpr int kPoses = 5;  // at once, with the zeros that they share
   const PathLinearisation& linear = equations_.linearisation();
-  const int m = static_cast<int>(path.mean.size());
-  path.covariance.setIdentity(linear.Row(m), linear.Row(m));
-  llt_.solveInPlace(path.covariance);
-  for (int k = 0; linear.with_rates() && k < m; ++k) {
-    path.covariance.middleRows<6>(kPoseSize * k) = path.covariance.middleRows<6>(linear.Row(k)).eval();
-    path.covariance.middleCols<6>(kPoseSize * k) = path.covariance.middleCols<6>(linear.Row(k)).eval();
+  const auto m = static_cast<int>(path.mean.size());
+  const Eigen::Index size = linear.Row(m);
+  L_inverse_.setZero(size, kPoseSize * m);
+  for (int k = 0; k < m; ++k) L_inverse_.block<6, 6>(linear.Row(k), kPoseSize * k).setIdentity();
+  path.covariance.resize(kPoseSize * m, kPoseSize * m);
+  for (int k = 0; k < m; k += kPoses) {
+    const Eigen::Index below = size - linear.Row(k), first = kPoseSize * k, count = kPoseSize * std::min(kPoses, m - k);
+    auto panel = L_inverse_.block(size - below, first, below, count);
+    llt_.matrixLLT().bottomRightCorner(below, below).triangularView<Eigen::Lower>().solveInPlace(panel);
+    path.covariance.block(first, 0, count, first + count).noalias() =
+        panel.transpose() * L_inverse_.block(size - below, 0, below, first + count);
   }
-  path.covariance.conservativeResize(kPoseSize * m, kPoseSize * m);
-  Symmetrise(path.covariance);
+  path.covariance.triangularView<Eigen::StrictlyUpper>() = path.covariance.transpose();
 }
 
 std::vector<Eigen::Vector3d> ModesOfTracks(std::span<const Track> tracks, const PathSolution& solution) {

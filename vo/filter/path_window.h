@@ -20,7 +20,8 @@ struct WindowOptions {
   int max_iterations = 10;
   bool marginal = false;  // the mode of the poses' marginal, not of poses and landmarks jointly
   double tolerance_sigma = kToleranceSigma;
-  double stop_if_above = std::numeric_limits<double>::infinity();  // an objective, as in Descent
+  // An objective, as in Descent. The covariance of a solution that is not below it is not computed.
+  double stop_if_above = std::numeric_limits<double>::infinity();
   Rates rates = Rates::none;
 };
 
@@ -43,6 +44,7 @@ class PathWindow {
 
   PathEquations equations_;  // workspace, so that repeated calls allocate little
   Eigen::LLT<Eigen::MatrixXd> llt_;
+  Eigen::MatrixXd L_inverse_;
   ChordSolver chord_;
 };
 
