@@ -40,6 +40,7 @@ struct TaskRecord {
   std::optional<double> metric(std::size_t index) const {
     return index < metrics.size() ? metrics[index] : std::nullopt;
   }
+  void AddReason(const std::string& another) { reason += (reason.empty() ? "" : "; ") + another; }
 };
 
 // Columns with their units: "ate_m", "rpe_orientation_rad", ...

@@ -137,10 +137,6 @@ evaluation::Metrics JudgeOutside(const campaign::Omitted& omit, const TaskOutput
                            output.truth.velocities, how);
 }
 
-void AddReason(TaskRecord& record, const std::string& reason) {
-  record.reason += (record.reason.empty() ? "" : "; ") + reason;
-}
-
 void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& output, TaskRecord& record) {
   evaluation::Metrics metrics = JudgeOutside(campaign.omit, output);
   metrics.timing.reset();
@@ -149,7 +145,7 @@ void WriteJudged(const fs::path& folder, const Campaign& campaign, TaskOutput& o
   record.metrics = campaign::MetricValues(metrics, align);
   if (system.external.sensors.metric()) record.metrics[campaign::MetricIndex("ate_sim3_m")].reset();  // never
   if (align == evaluation::Alignment::yaw && evaluation::TiltsZ(metrics.errors))
-    AddReason(record, "z of its world is not up");
+    record.AddReason("z of its world is not up");
   if (campaign.keep == campaign::Keep::numbers) return;
   WriteMetricsJson(folder, {{{record.system, record.seed, ".", 0, output.calibration}, metrics}});
   if (campaign.keep == campaign::Keep::all) {
@@ -256,9 +252,9 @@ void CheckStamps(const TaskOutput& output, TaskRecord& record) {
     record.reason += Remedy(output.run.trajectory, frames);
     return;
   }
-  if (answered.poses < all) AddReason(record, fmt::format("poses at no frame's time: {}", all - answered.poses));
+  if (answered.poses < all) record.AddReason(fmt::format("poses at no frame's time: {}", all - answered.poses));
   if (answered.until + 1 < frames.size())
-    AddReason(record, fmt::format("no pose after the first {} of {} frames", answered.until, frames.size()));
+    record.AddReason(fmt::format("no pose after the first {} of {} frames", answered.until, frames.size()));
 }
 
 class CampaignTasks : public campaign::TaskRunner {

@@ -194,8 +194,7 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
       const std::size_t left_out = RemoveNotFinite(trajectory);
       answer.trajectory = evaluation::ReadTrajectory(trajectory);
       if (system.poses_of_imu) MoveToCamera(answer.trajectory, CameraInImu(sequence.folder));
-      if (left_out > 0)
-        record.reason += fmt::format("{}lines without a finite pose, left out: {}", how.empty() ? "" : "; ", left_out);
+      if (left_out > 0) record.AddReason(fmt::format("lines without a finite pose, left out: {}", left_out));
     } catch (const evaluation::InputError& error) {
       // The task's path does not belong in a table that is the same everywhere.
       lost(campaign::Status::no_answer, ShortenedTo(3, Without(error.what(), at_work.string() + "/")));
