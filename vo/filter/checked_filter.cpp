@@ -19,9 +19,12 @@ bool Symmetric(const Eigen::Ref<const Eigen::MatrixXd>& P) {
 }
 
 #if !defined(NDEBUG)
-// Independent of units: as correlations, of the entries with variance. Too expensive for every stage.
+// Independent of units: as correlations, of the entries with variance. Smaller variances are products of denormal
+// numbers, which have few digits. Too expensive for every stage.
 bool NoNegativeEigenvalue(const Matrix12& P) {
-  const Eigen::Array<double, 12, 1> scale = (P.diagonal().array() > 0).select(P.diagonal().array().rsqrt(), 0);
+  constexpr double kLeastVariance = 1e-280;
+  const Eigen::Array<double, 12, 1> scale =
+      (P.diagonal().array() > kLeastVariance).select(P.diagonal().array().rsqrt(), 0);
   const Matrix12 correlation = scale.matrix().asDiagonal() * P * scale.matrix().asDiagonal();
   return Eigen::SelfAdjointEigenSolver<Matrix12>(correlation, Eigen::EigenvaluesOnly).eigenvalues().minCoeff() >
          -kRounding;

@@ -83,7 +83,7 @@ ParticleSet::Replacement ParticleSet::ReplaceNonFinite() {
       continue;
     }
     particles_[heaviest].log_weight -= std::numbers::ln2;
-    weights_[i] = weights_[heaviest] *= 0.5;
+    weights_[i] = weights_[heaviest] = 0.5 * (weights_[heaviest] + weights_[i]);
     particles_[i] = particles_[heaviest];
   }
   return replaced;

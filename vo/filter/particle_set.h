@@ -39,8 +39,8 @@ class ParticleSet {
   std::size_t Heaviest() const;                                    // the first of them
   double EffectiveSize() const;                                    // 1 / sum w^2
 
-  // Particles whose log weight is not finite became copies of `by`, which shares its weight with them. None has a
-  // finite one: `by` is -1, and their log weights and evidences begin at 0 again.
+  // Particles whose log weight is not finite became copies of `by`, which shares its weight and theirs with them. None
+  // has a finite one: `by` is -1, and their log weights and evidences begin at 0 again.
   struct Replacement {
     std::vector<int> particles;
     int by = -1;

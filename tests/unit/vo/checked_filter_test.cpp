@@ -417,6 +417,14 @@ TEST(CheckedFilter, RefusesWhatIsNoAnswer) {
     EXPECT_THAT(seen.fault->what(), StartsWith(message));
   }
   EXPECT_FALSE(Play(std::make_unique<Broken>(), {}).fault) << "unspoilt";
+  auto denormal = std::make_unique<Broken>();  // a second particle of the least weight
+  denormal->spoil_belief = [](auto& b) {
+    b.covariance.row(2).setZero();
+    b.covariance.col(2).setZero();
+    b.covariance(2, 2) = 2e-316;
+    b.covariance(7, 2) = b.covariance(2, 7) = 1e-157;
+  };
+  EXPECT_FALSE(Play(std::move(denormal), {}).fault);
 }
 
 // Points farther than 80 degrees from the axis of a fisheye lens: they have a pixel, but no place on the plane z = 1.

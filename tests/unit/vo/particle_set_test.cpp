@@ -80,6 +80,15 @@ TEST(ParticleSet, UniformWeightsRejectByTheBayesFactor) {
   EXPECT_THAT(set.weights(), ElementsAre(0.25, 0.25, 0.25, 0.25));
 }
 
+// A log weight is lost and the evidence of the present window is finite.
+TEST(ParticleSet, UniformWeightsSumToOneWhereALogWeightIsLost) {
+  vo::ParticleSet set = Set({0, kNan, 0});
+  const vo::ParticleSet::Replacement replaced = set.NormaliseUniform({-1, -2, -100}, 50);
+  EXPECT_THAT(replaced.particles, ElementsAre(1));
+  EXPECT_EQ(replaced.by, 0);
+  EXPECT_THAT(set.weights(), ElementsAre(0.5, 0.5, 0.0));
+}
+
 // Systematic resampling at u = 0.5: points at (k + 0.5) / 4 of the cumulated weights.
 TEST(ParticleSet, Resamples) {
   vo::ParticleSet set = Set({std::log(0.1), std::log(0.55), std::log(0.05), std::log(0.3)});
