@@ -135,6 +135,7 @@ Estimate Odometry::TrackFirstFramesAgain() {
       impl_->trackers[0].KeepScale(square / product);
       for (StampedPose& pose : reissued_) pose.pose.p_WC = origin + product / square * (pose.pose.p_WC - origin);
     }
+    calibration_->EndFit();  // of the last window too
     if (round == kRounds || !ChangeReadout()) break;
   }
   return impl_->tracker().Answer(last.stamp_ns, last.diagnostics);

@@ -65,7 +65,6 @@ bool SelfCalibration::Add(std::int64_t stamp_ns, const Pose& pose, std::span<con
   return completed;
 }
 
-// Returns whether there was one.
 bool SelfCalibration::EndFit() {
   if (!fitting_) return false;
   const std::optional<WindowFit> fit = std::exchange(fitting_, std::nullopt)->AllRounds();

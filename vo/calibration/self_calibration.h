@@ -42,6 +42,7 @@ class SelfCalibration {
   // A frame and its answer. True where it completes the fit of a window: at once while starting, else one round a
   // frame.
   bool Add(std::int64_t stamp_ns, const Pose& pose, std::span<const FeatureView> features);
+  bool EndFit();  // all rounds of the present one, if any; returns whether there was one
   // The readout time from now on, where it differs significantly from that in use.
   std::optional<double> ChangeReadout();
   // All frames are added again.
@@ -50,8 +51,6 @@ class SelfCalibration {
   CalibrationEstimate Estimate();  // ends the fit
 
  private:
-  bool EndFit();
-
   static constexpr std::size_t kWindowFrames = 30;
   static constexpr int kStartWindows = 3, kMostWindows = 40;
   static constexpr std::size_t kEnough = 8;  // windows that determine a parameter

@@ -22,6 +22,9 @@ constexpr double kFloorPx = 0.1;          // standard deviation of any sighting
 constexpr double kSystematicPx = 0.01;    // rms of an error pattern common to all frames that looks like either unknown
 constexpr double kCauchySq = 5;           // squared residual of half weight, in squared scales
 constexpr double kMedianOfChiSq = 1.386;  // two degrees of freedom
+// Views beyond five standard deviations; a larger share is of wrong tracks, whose estimate may be far off and precise.
+constexpr double kOutlierSq = 25, kMostOutliers = 0.1;
+constexpr double kLeastScaleSq = 0.01;  // smaller residuals, in units of the stated covariance, are of no outlier
 constexpr int kMaxRounds = 50;
 constexpr double kSettledReadout = 5e-5, kSettledFocal = 3e-4;  // [s], [-]: last step
 constexpr double kPriorReadout = 0.05, kPriorFocal = 0.1;       // standard deviations: against divergence only
@@ -124,7 +127,7 @@ class WindowFitting::Bundle {
       damping_ = std::max(1e-6, 0.1 * damping_);
       scale_sq_ = ScaleSquare();
       if (std::abs(moved[0]) < kSettledReadout && std::abs(moved[1]) < kSettledFocal && rounds_ > 3)
-        return Progress::converged;
+        return OutlierShare() < kMostOutliers ? Progress::converged : Progress::failed;
     } else {
       damping_ *= 10;
       state_ = std::move(kept);
@@ -253,6 +256,12 @@ class WindowFitting::Bundle {
     for (const Linear& l : linear_)
       cost += kCauchySq * std::log1p((l.in_front ? l.square : kBehind) / (kCauchySq * scale_sq_));
     return cost;
+  }
+
+  double OutlierShare() const {
+    const double limit = kOutlierSq * std::max(scale_sq_, kLeastScaleSq);
+    const auto outlier = [&](const Linear& l) { return !l.in_front || l.square > limit; };
+    return static_cast<double>(std::ranges::count_if(linear_, outlier)) / static_cast<double>(linear_.size());
   }
 
   // Normal equations of the poses, of which the first is fixed, and shared unknowns; landmarks eliminated.

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -152,6 +153,27 @@ TEST(WindowFit, KeepsAReadoutThatIsStated) {
   ASSERT_TRUE(fit);
   EXPECT_NEAR(fit->readout_s.value, 0.02, 1e-9);
   EXPECT_EQ(fit->readout_s.sigma, 0);
+}
+
+// Tracks that slide from their points, by a random walk of 1 px a frame: a twentieth is outvoted, a half is refused.
+TEST(WindowFit, RefusesTracksThatSlide) {
+  Draws draws(9);
+  for (int world = 0; world < 20; ++world) {
+    const auto frames = Film(draws, 0.026, 30, kMatches);
+    for (const int one_of : {20, 2}) {
+      auto sliding = frames;
+      std::map<int, Vector2d> slid;
+      for (vo::TrackedFrame& frame : sliding)
+        for (vo::Sighting& sighting : frame.sightings)
+          if (sighting.landmark % one_of == 0)
+            sighting.pixel += slid.try_emplace(sighting.landmark, 0, 0).first->second += draws.Normals<2>();
+      const auto fit = vo::WindowFitting(sliding, kCamera, 0, true).AllRounds();
+      EXPECT_EQ(fit.has_value(), one_of == 20);
+      if (one_of == 20 && fit) {
+        EXPECT_NEAR(fit->readout_s.value, 0.026, 0.002);
+      }
+    }
+  }
 }
 
 // A power of two rounds no product, so that any constant with a length shows.
