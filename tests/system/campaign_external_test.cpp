@@ -241,6 +241,8 @@ TEST_F(CampaignTest, AProgramThatIsBuiltAnewIsRunAnew) {
   MustRun(CampaignOf("[other, mine]"), "out", {"--update"});
   EXPECT_NE(BySystem(Results("out"))["mine"]["ate_m"], before);
   EXPECT_EQ(written(0), other);
+  EXPECT_THAT(Run(CampaignOf("[other, mine]"), "out", {"--redo", "orb"}).err,
+              HasSubstr("no system 'orb'; there are 'other', 'mine'"));
   MustRun(CampaignOf("[other, mine]"), "out", {"--redo", "other"});
   EXPECT_GT(written(0), other);
 }

@@ -1,5 +1,5 @@
 // Scenarios x varied settings x systems x seeds: each a task with a folder of its own; finished tasks are not repeated.
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -169,8 +170,9 @@ void Conclude(const CampaignWork& work, const CampaignOptions& options) {
 
 void RemoveSystems(const Campaign& campaign, const CampaignOptions& options) {
   for (const std::string& name : options.redo) {
-    if (std::ranges::find(campaign.systems, name, &SystemEntry::name) == campaign.systems.end())
-      throw BadInput(fmt::format("--redo: the campaign has no system '{}'", name));
+    if (std::ranges::find(campaign.systems, name, &SystemEntry::name) != campaign.systems.end()) continue;
+    const auto names = campaign.systems | std::views::transform(&SystemEntry::name);
+    throw BadInput(fmt::format("--redo: there is no system '{}'; there are '{}'", name, fmt::join(names, "', '")));
   }
   for (std::int64_t task = 0; task < Tasks(campaign); ++task) {
     if (std::ranges::count(options.redo, campaign.systems[ChoiceOf(campaign, task).system].name) > 0)
