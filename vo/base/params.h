@@ -224,8 +224,7 @@ void Visit(V& v, FeatureParams& p) {
   v.Renamed("window_enlarged", "search_wide");
   v.Renamed("window_lost", "search_uncertain");
   v.Renamed("window_recovery", "search_relocalise");
-  v("search_first", p.search_first_px,
-    {Unit::pixel, window, "side of the first window; 1: the paper, without it, and with matches on a window's border"});
+  v("search_first", p.search_first_px, {Unit::pixel, window, "side of the first window; 1: the paper, without it"});
   v("search_normal", p.search_normal_px, {Unit::pixel, window, "side of the search window about the prediction"});
   v("search_wide", p.search_wide_px, {Unit::pixel, window, "the same where nothing fits in the normal one"});
   v("search_uncertain", p.search_uncertain_px,

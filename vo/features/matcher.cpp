@@ -103,7 +103,6 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
   const int max_distance = static_cast<int>(std::lround(params.max_hamming * kBriskPairs));
   const Eigen::Matrix2d constant = params.sigma_px * params.sigma_px * Eigen::Matrix2d::Identity();
   const Eigen::Matrix2d floor = params.sigma_floor_px * params.sigma_floor_px * Eigen::Matrix2d::Identity();
-  const bool as_in_paper = params.search_first_px == 1;
   const BriskSampler first = FirstSampler(params);
   std::vector<SearchResult> results(requests.size());
   std::vector<PixelRun> region;
@@ -116,16 +115,17 @@ std::vector<SearchResult> FindFeatures(const std::vector<SearchRequest>& request
     const RelativeBlur blur = RelativeBlur::Of(exposure_s * request.first_rate, exposure_s * request.rate);
     const std::optional<Appearance> at_blur = AtBlur(request, blur.of_patch, first);
     const Appearance& view = at_blur ? *at_blur : *request.appearance;
-    int searched = 1;
+    int searched = 0;
     for (const int wanted :
          {params.search_first_px, params.search_normal_px, params.search_wide_px, LargestWindow(request, params)}) {
       const int side = request.widest_px ? std::min(wanted, *request.widest_px) : wanted;
       if (side <= searched) continue;
+      const bool quick = searched == 0 && side < params.search_normal_px;
       searched = side;
       SearchRegion(request, side, params, region);
       const auto best = brisk.Nearest(view.descriptor, sampler, region);
-      if (!best || best->distance >= max_distance) continue;
-      if (!as_in_paper && OnBorder(best->pixel, Rounded(request.predicted), side)) continue;  // drawn to the prediction
+      if (!best || best->distance >= max_distance || (quick && OnBorder(best->pixel, Rounded(request.predicted), side)))
+        continue;
       found = {best->pixel.cast<double>(), constant};
       break;
     }
