@@ -31,7 +31,7 @@ Labels LabelsOf(const Scene& scene, const WorldDescription& description) {
     labels.classes.push_back(of.category);
   };
   for (std::size_t k = 0; k < description.meshes.size(); ++k) {
-    const auto [first, last] = std::ranges::equal_range(scene.mesh_entries, k);
+    const auto [first, last] = std::equal_range(scene.mesh_entries.begin(), scene.mesh_entries.end(), k);
     add(description.meshes[k], "world.meshes." + std::to_string(k), -1,
         std::span(scene.meshes)
             .subspan(static_cast<std::size_t>(first - scene.mesh_entries.begin()),
@@ -53,7 +53,7 @@ Labels LabelsOf(const Scene& scene, const WorldDescription& description) {
     add(description.objects[k].mesh, "world.objects." + std::to_string(k), static_cast<int>(k),
         scene.objects[k].meshes);
   std::ranges::sort(labels.classes);
-  labels.classes.erase(std::ranges::unique(labels.classes).begin(), labels.classes.end());
+  labels.classes.erase(std::unique(labels.classes.begin(), labels.classes.end()), labels.classes.end());
   return labels;
 }
 

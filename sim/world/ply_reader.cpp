@@ -104,6 +104,8 @@ class PlyReader {
         const std::string_view name = NextWord(line);
         const std::optional<double> count = ToNumber(NextWord(line));
         if (!count || !(*count >= 0 && *count <= 1e15)) throw std::runtime_error("an element without a count");
+        if (name == "vertex" && std::ranges::find(elements_, name, &Element::name) != elements_.end())
+          throw std::runtime_error("it has vertices twice");
         elements_.push_back({std::string(name), static_cast<std::size_t>(*count), {}});
       } else if (word == "property" && !elements_.empty()) {
         std::string_view type = NextWord(line);
@@ -204,9 +206,9 @@ class PlyReader {
   }
 
   void ReadVertices(const Element& e) {
-    const auto& [xyz, normal, color, uv] = vertex_;
-    if (!xyz) throw std::runtime_error("its vertices have no x, y, z");
+    if (!vertex_.xyz) throw std::runtime_error("its vertices have no x, y, z");
     ForEachRow(e, [&](const Row& row) {
+      const auto& [xyz, normal, color, uv] = vertex_;
       const auto number = [&](std::size_t at) {
         if (row[at].size() != 1) throw std::runtime_error("a coordinate is a list");
         return row[at][0];

@@ -102,7 +102,7 @@ void Window::BuildTracks(const LandmarkTable& table) {
           {slot, match.z, R.inverse(), std::log(R.determinant()), match.centre_offset_W, match.row.time});
     }
   }
-  std::ranges::stable_partition(tracks_, [](const Track& track) { return !track.provisional; });
+  std::stable_partition(tracks_.begin(), tracks_.end(), [](const Track& track) { return !track.provisional; });
   for (std::size_t i = 0; i < tracks_.size(); ++i) track_of_[tracks_[i].landmark] = static_cast<int>(i);
 }
 

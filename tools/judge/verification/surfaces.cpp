@@ -322,7 +322,8 @@ void Occlusion(Frames& frames, std::size_t frame, const std::string& stream, std
 
 void Landmarks(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
   const Sequence& s = frames.sequence();
-  const auto [first, last] = std::ranges::equal_range(s.tracks, s.stamps[frame], {}, &Entry::stamp_ns);
+  const auto first = std::ranges::lower_bound(s.tracks, s.stamps[frame], {}, &Entry::stamp_ns),
+             last = std::ranges::upper_bound(s.tracks, s.stamps[frame], {}, &Entry::stamp_ns);
   if (first == last || !s.has_pose[frame]) return;
   const cv::Mat depth = frames.Depth(frame);
   Worst worst;
