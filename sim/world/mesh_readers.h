@@ -10,7 +10,8 @@ namespace sim {
 // Wavefront OBJ with its material libraries. Polygons of any number of corners; lines, points, curves are left out.
 // Problems have lines.
 // Source: "Object Files (.obj)" and "MTL Material Format", Alias|Wavefront Advanced Visualizer, appendix B; vertex
-// colours (x y z r g b) as MeshLab and Blender write them; Pm, Pr, norm of Exocortex' extension.
+// colours (x y z r g b) as MeshLab and Blender write them, in comments (#MRGB) as ZBrush does; Pm, Pr, norm of
+// Exocortex' extension.
 void ReadObj(MeshFiles& files, MeshImport& import);
 
 // PLY, ASCII and binary of both byte orders. Polygons and triangle strips; texture coordinates and colours of vertices,

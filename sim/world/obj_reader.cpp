@@ -31,6 +31,7 @@ class ObjReader {
       line_ = line;
       Statement(word, rest);
     });
+    if (pools_.colors.empty()) PolypaintColors(*text);
     for (const Part& part : parts_) {  // forward references are allowed
       if (problems_.empty()) problems_ = IndexProblem(part.polygons, pools_);
     }
@@ -89,6 +90,23 @@ class ObjReader {
       return;
     }
     known_ = true;
+  }
+
+  // Vertex colours in comments of ZBrush: "#MRGB" and MMRRGGBB, hexadecimal, of each vertex in turn; M is a mask.
+  void PolypaintColors(std::string_view text) {
+    static constexpr std::string_view kKey = "#MRGB ";
+    for (std::size_t at = text.find(kKey); at != std::string_view::npos; at = text.find(kKey, at)) {
+      if (at > 0 && text[at - 1] != '\n') return pools_.colors.clear();
+      at += kKey.size();
+      std::uint32_t bits = 0;
+      for (const char* begin = text.data() + at; text.size() - at >= 8; at += 8, begin += 8) {
+        const auto [end, error] = std::from_chars(begin, begin + 8, bits, 16);
+        if (error != std::errc() || end != begin + 8) break;
+        const glm::vec3 code(bits >> 16 & 255u, bits >> 8 & 255u, bits & 255u);
+        pools_.colors.emplace_back(code / 255.0f, 1.0f);
+      }
+    }
+    if (pools_.colors.size() != pools_.positions.size()) pools_.colors.clear();
   }
 
   // One that is not finite leads to flat normals.

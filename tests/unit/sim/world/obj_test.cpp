@@ -123,6 +123,19 @@ TEST_F(Obj, VertexColours) {
   EXPECT_THAT(bytes.warnings, ElementsAre(HasSubstr("0 ... 255")));
 }
 
+// ZBrush's, in lines of any number of vertices. Of another number than the vertices: none.
+TEST_F(Obj, VertexColoursInComments) {
+  const auto with = [](const std::string& second) {
+    return "v 0 0 1\nv 1 0 1\nv 0 1 1\n#MRGB ffff0000ff00ff00\n#MRGB " + second + "\nf 1 2 3\n";
+  };
+  const Scene scene = Load(with("ff0000ff"));
+  ASSERT_EQ(scene.meshes.at(0).colors.size(), 3U);
+  EXPECT_EQ(scene.meshes[0].colors[0], glm::vec3(1, 0, 0));
+  EXPECT_EQ(scene.meshes[0].colors[1], glm::vec3(0, 1, 0));
+  EXPECT_EQ(scene.meshes[0].colors[2], glm::vec3(0, 0, 1));
+  EXPECT_TRUE(Load(with("ff0000")).meshes.at(0).colors.empty());
+}
+
 // A texture replaces vertex colours, which photogrammetry writes beside it; a warning where the colours are not white.
 TEST_F(Obj, PictureInPlaceOfVertexColours) {
   folder_.Write("grey.png", EncodeColor(".png", 128, 128, 128));
