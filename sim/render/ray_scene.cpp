@@ -65,9 +65,8 @@ void CheckScene(const Scene& scene) {
             "mesh " + mesh.name + ": its per-vertex arrays differ in length");
     require(!mesh.uvs.empty() || !scene.materials[static_cast<std::size_t>(mesh.material)].HasPicture(),
             "mesh " + mesh.name + ": textured, but without texture coordinates");
-    for (const glm::uvec3& t : mesh.triangles) {
-      require(t.x < n && t.y < n && t.z < n, "mesh " + mesh.name + ": a triangle names a vertex that does not exist");
-    }
+    require(std::ranges::all_of(mesh.triangles, [n](const glm::uvec3& t) { return t.x < n && t.y < n && t.z < n; }),
+            "mesh " + mesh.name + ": a triangle names a vertex that does not exist");
   };
   for (const Mesh& mesh : scene.meshes) check(mesh);
   for (const MovingObject& object : scene.objects) {
@@ -79,8 +78,12 @@ void CheckScene(const Scene& scene) {
 RayScene::RayScene(const Scene& scene) {
   CheckScene(scene);
   AppendTextures(scene);
+  std::size_t vertices = 4 * scene.lights.size() + 1,
+              triangles = 2 * scene.lights.size();  // Embree reads 16 bytes of each
   const auto take_in = [&](const std::vector<Mesh>& meshes) {
     for (const Mesh& mesh : meshes) {
+      vertices += mesh.positions.size();
+      triangles += mesh.triangles.size();
       any_normals_ = any_normals_ || !mesh.normals.empty();
       any_colors_ = any_colors_ || !mesh.colors.empty();
       any_tangents_ = any_tangents_ || scene.materials[static_cast<std::size_t>(mesh.material)].normal_map >= 0;
@@ -88,6 +91,10 @@ RayScene::RayScene(const Scene& scene) {
   };
   take_in(scene.meshes);
   for (const MovingObject& object : scene.objects) take_in(object.meshes);
+  positions_.reserve(vertices);
+  triangles_.reserve(triangles);
+  shading_.reserve(triangles);
+  if (any_normals_) normals_.reserve(triangles);
   filtered_first_ = AppendMeshes(scene, scene.meshes, 0)[1];
   AppendLamps(scene);
   still_triangles_ = static_cast<std::uint32_t>(triangles_.size());
@@ -197,25 +204,17 @@ std::uint32_t RayScene::MeshOf(std::uint32_t triangle) const {
 
 void RayScene::Attach(RTCScene to, std::size_t begin, std::size_t end, bool filtered, std::size_t first_filter) const {
   RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  const std::span<const glm::uvec3> triangles(triangles_.data() + begin, end - begin);
-  std::uint32_t low = ~0u, high = 0;  // of the vertices
-  for (const glm::uvec3& t : triangles) low = std::min({low, t.x, t.y, t.z}), high = std::max({high, t.x, t.y, t.z});
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
-                                           std::size_t{high} - low + 1);
-  void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
-                                          triangles.size());
-  if (vertices != nullptr && indices != nullptr) {
-    std::copy(positions_.begin() + low, positions_.begin() + high + 1, static_cast<glm::vec3*>(vertices));
-    std::transform(triangles.begin(), triangles.end(), static_cast<glm::uvec3*>(indices),
-                   [low](const glm::uvec3& t) { return t - low; });
-    if (filtered) {
-      rtcSetGeometryUserData(geometry, const_cast<Filter*>(filters_.data() + first_filter));  // Embree passes it on
-      rtcSetGeometryIntersectFilterFunction(geometry, FilterIntersect);
-      rtcSetGeometryOccludedFilterFunction(geometry, FilterOccluded);
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(to, geometry, filtered ? 1 : 0);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, positions_.data(), 0,
+                             sizeof(glm::vec3), positions_.size());
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, triangles_.data(),
+                             begin * sizeof(glm::uvec3), sizeof(glm::uvec3), end - begin);
+  if (filtered) {
+    rtcSetGeometryUserData(geometry, const_cast<Filter*>(filters_.data() + first_filter));  // Embree passes it on
+    rtcSetGeometryIntersectFilterFunction(geometry, FilterIntersect);
+    rtcSetGeometryOccludedFilterFunction(geometry, FilterOccluded);
   }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(to, geometry, filtered ? 1 : 0);
   rtcReleaseGeometry(geometry);
 }
 
@@ -226,7 +225,7 @@ EmbreeScene NewTree(RTCDevice device) {
 }
 
 void CommitTree(const EmbreeScene& tree) {
-  tbb::task_arena(1).execute([&] { rtcCommitScene(tree.get()); });
+  tbb::this_task_arena::isolate([&] { rtcCommitScene(tree.get()); });  // without the caller's other tasks
 }
 
 void CheckEmbree(RTCDevice device, const char* what) {

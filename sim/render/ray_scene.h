@@ -51,7 +51,7 @@ using EmbreeDevice = std::unique_ptr<std::remove_pointer_t<RTCDevice>, EmbreeRel
 using EmbreeScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, EmbreeRelease>;
 
 EmbreeScene NewTree(RTCDevice device);
-// In one thread: where triangles touch, which one a ray meets may depend on the tree, and the tree on the threads.
+// Which of two triangles a ray meets where they touch depends on the tree, and the tree not on the threads.
 void CommitTree(const EmbreeScene& tree);
 // Throws std::runtime_error when Embree has failed at `what`.
 void CheckEmbree(RTCDevice device, const char* what);

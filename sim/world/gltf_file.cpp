@@ -153,9 +153,8 @@ void WarnOnce(MeshImport& import, const std::string& what) {
 }
 
 GltfFile::GltfFile(MeshFiles& files, MeshImport& import) : files_(files), import_(import) {
-  const std::string bytes = files.Read(files.mesh()).value_or("");
+  std::string bytes = files.Read(files.mesh()).value_or(""), text;
   if (const std::string problem = StandInProblem(base::AsBytes(bytes)); !problem.empty()) Fail(problem);
-  std::string text(base::WithoutMark(bytes));
   if (bytes.starts_with("glTF")) {
     const std::span<const std::uint8_t> all = base::AsBytes(bytes);
     const auto word = [&](std::size_t at) {
@@ -164,13 +163,19 @@ GltfFile::GltfFile(MeshFiles& files, MeshImport& import) : files_(files), import
     if (word(4) == 1) throw OlderGltf();
     if (word(4) != 2) Fail("is binary glTF of version " + std::to_string(word(4)) + ": 1 and 2 are read");
     constexpr std::uint32_t kJson = 0x4e4f534a, kBinary = 0x004e4942;
-    text.clear();
+    std::optional<std::span<const std::uint8_t>> binary;
     for (std::size_t at = 12; at + 8 <= std::min<std::size_t>(word(8), all.size());) {  // length, type, content
       const std::span<const std::uint8_t> chunk = Part(all, at + 8, word(at), "a chunk");
       if (word(at + 4) == kJson && text.empty()) text = base::AsText(chunk);
-      if (word(at + 4) == kBinary && !binary_) binary_ = base::AsText(chunk);
+      if (word(at + 4) == kBinary && !binary) binary = chunk;
       at += 8 + chunk.size();
     }
+    if (binary) {
+      bytes.resize(static_cast<std::size_t>(binary->data() - all.data()) + binary->size());
+      binary_ = std::move(bytes.erase(0, bytes.size() - binary->size()));
+    }
+  } else {
+    text = base::WithoutMark(bytes);
   }
   if (const std::string problem = limits::JsonProblem(text); !problem.empty()) Fail("is " + problem);
   document_ = json::parse(text);
@@ -243,7 +248,7 @@ const std::string& GltfFile::Buffer(std::size_t index) {
   const std::string uri = buffer.value("uri", ""), name = "buffers[" + std::to_string(index) + "]";
   if (uri.empty()) {
     if (!binary_ || index != 0) Fail(name + " has no data");
-    at->second = *binary_;
+    at->second = std::move(*binary_);  // of the one buffer that may be without a name
   } else {
     std::optional<std::string> data = DataOf(uri);
     at->second = data ? std::move(*data) : ReadFile(uri);

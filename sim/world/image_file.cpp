@@ -9,6 +9,7 @@
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "tools/base/limits/picture.h"
 
@@ -48,10 +49,7 @@ DecodedImage DecodeTga(Bytes file, bool with_alpha) {
   const std::size_t size = palette ? 1 : entry, colors = 18 + file[0], first_color = word(3),
                     color_count = file[1] ? word(5) : 0;
   std::size_t at = colors + color_count * (file[1] != 0 ? (file[7] + 7u) / 8 : 0);
-  DecodedImage image{width,
-                     height,
-                     std::vector<std::uint8_t>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 3),
-                     {}};
+  DecodedImage image(cv::Mat(height, width, CV_8UC3));
   const std::size_t pixels = image.rgb.size() / 3;
   const bool has_alpha = with_alpha && entry == 4 && type != 3 && (palette || (file[17] & 15) != 0);
   if (has_alpha) image.alpha.resize(pixels);
@@ -167,7 +165,7 @@ DecodedImage DecodeByOpenCv(Bytes bytes, bool with_alpha) {
                           ? CodedHdr(bytes)
                           : DecodeMatrix(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION),
                 all = with_alpha ? DecodeMatrix(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
-  DecodedImage image{bgr.cols, bgr.rows, std::vector<std::uint8_t>(bgr.total() * 3), {}};
+  DecodedImage image(bgr);
   if (all.channels() == 4 && all.size() == bgr.size() && (all.depth() == CV_8U || all.depth() == CV_16U)) {
     cv::Mat alpha;
     cv::extractChannel(all, alpha, 3);
@@ -176,11 +174,14 @@ DecodedImage DecodeByOpenCv(Bytes bytes, bool with_alpha) {
   }
   if (const cv::Mat alpha = AlphaOfGreyKey(bytes, all); alpha.size() == bgr.size())
     image.alpha.assign(alpha.begin<std::uint8_t>(), alpha.end<std::uint8_t>());
-  cv::cvtColor(bgr, cv::Mat(bgr.size(), CV_8UC3, image.rgb.data()), cv::COLOR_BGR2RGB);
+  for (std::size_t i = 0; i < image.rgb.size(); i += 3) std::swap(image.rgb[i], image.rgb[i + 2]);
   return image;
 }
 
 }  // namespace
+
+DecodedImage::DecodedImage(const cv::Mat& of)
+    : width(of.cols), height(of.rows), pixels(std::make_shared<cv::Mat>(of)), rgb(pixels->data, 3 * pixels->total()) {}
 
 DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
   if (bytes.empty()) throw std::runtime_error("the file is empty");
@@ -199,14 +200,11 @@ DecodedImage DecodeImage(Bytes bytes, bool with_alpha) {
 }
 
 void SetAlpha(const DecodedImage& mask, DecodedImage& image) {
-  const auto view = [&](const std::vector<std::uint8_t>& bytes, int type) {
-    return cv::Mat(mask.height, mask.width, type, const_cast<std::uint8_t*>(bytes.data()));
-  };
   cv::Mat alpha;
   if (std::ranges::all_of(mask.alpha, [](std::uint8_t a) { return a == 255; })) {
-    cv::cvtColor(view(mask.rgb, CV_8UC3), alpha, cv::COLOR_RGB2GRAY);
+    cv::cvtColor(*mask.pixels, alpha, cv::COLOR_RGB2GRAY);
   } else {
-    alpha = view(mask.alpha, CV_8UC1);
+    alpha = cv::Mat(mask.height, mask.width, CV_8UC1, const_cast<std::uint8_t*>(mask.alpha.data()));
   }
   cv::Mat fitting;
   cv::resize(alpha, fitting, cv::Size(image.width, image.height), 0, 0, cv::INTER_LINEAR);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,8 +14,11 @@ class Mat;
 namespace sim {
 
 struct DecodedImage {
+  explicit DecodedImage(const cv::Mat& of);  // of CV_8UC3, whose memory it shares
+
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgb;    // width * height * 3, rows from the top
+  std::shared_ptr<cv::Mat> pixels;
+  std::span<std::uint8_t> rgb;      // of the pixels: width * height * 3, rows from the top
   std::vector<std::uint8_t> alpha;  // width * height where requested and present in the picture, or nothing
 };
 

@@ -230,6 +230,7 @@ class FileReader {
   }
 
   void AppendNormals(const ImportedMesh& in, const glm::dmat3& transform, const std::string& label, Mesh& out) {
+    out.normals.reserve(in.normals.size());
     for (const glm::vec3& v : in.normals) {
       const glm::dvec3 n = transform * glm::dvec3(v);
       const double length = glm::length(n);

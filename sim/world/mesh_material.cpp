@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vector_relational.hpp>
+#include <opencv2/core.hpp>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -25,10 +26,10 @@ DecodedImage Decode(const ImportedPicture& picture, bool with_alpha) {
   const std::string problem = limits::PictureSizeProblem(picture.width, picture.height, picture.bytes.size());
   if (!problem.empty()) throw std::runtime_error(problem);
   if (texels != std::size_t{picture.width} * picture.height) throw std::runtime_error("its texels are not all there");
-  DecodedImage image{static_cast<int>(picture.width), static_cast<int>(picture.height), {}, {}};
+  DecodedImage image(cv::Mat(static_cast<int>(picture.height), static_cast<int>(picture.width), CV_8UC3));
   for (std::size_t i = 0; i < texels; ++i) {
     const std::uint8_t* bgra = &picture.bytes[4 * i];
-    image.rgb.insert(image.rgb.end(), {bgra[2], bgra[1], bgra[0]});
+    for (std::size_t c = 0; c < 3; ++c) image.rgb[3 * i + c] = bgra[2 - c];
     if (with_alpha) image.alpha.push_back(bgra[3]);
   }
   return image;

@@ -35,14 +35,21 @@ std::vector<TextureLevel> LevelsOf(int width, int height) {
 
 constexpr float kTexelMax = 1023.0f;
 
-std::uint32_t Encode(float linear, bool roots) {
+std::int32_t Encode(float linear, bool roots) {
   const float clipped = std::clamp(linear, 0.0f, 1.0f);
-  return static_cast<std::uint32_t>(0.5 + static_cast<double>((roots ? std::sqrt(clipped) : clipped) * kTexelMax));
+  return static_cast<std::int32_t>(0.5 + static_cast<double>((roots ? std::sqrt(clipped) : clipped) * kTexelMax));
 }
 
-// A texel of linear red, green, blue.
-std::uint32_t Packed(const float* rgb, bool roots) {
-  return Encode(rgb[0], roots) | Encode(rgb[1], roots) << 10 | Encode(rgb[2], roots) << 20;
+// Texels of `count` linear red, green, blue.
+void Pack(const float* rgb, int count, bool roots, std::uint32_t* texels) {
+  static constexpr int kBlock = 64;
+  std::array<std::int32_t, 3 * kBlock> codes;
+  for (; count > 0; count -= kBlock, rgb += codes.size(), texels += kBlock) {
+    const int n = std::min(count, kBlock);
+    for (int i = 0; i < 3 * n; ++i) codes[i] = Encode(rgb[i], roots);
+    for (int i = 0; i < n; ++i)
+      texels[i] = static_cast<std::uint32_t>(codes[3 * i] | codes[3 * i + 1] << 10 | codes[3 * i + 2] << 20);
+  }
 }
 
 glm::vec3 Decode(std::uint32_t bits, bool roots) {
@@ -106,26 +113,29 @@ std::shared_ptr<float[]> TiledLevels(std::span<const std::uint8_t> rgb, int widt
   const int columns = width / kTile;
   const std::shared_ptr<float[]> out = LargeArray<float>(3 * static_cast<std::size_t>(columns * (height / kTile)));
   tbb::parallel_for(0, height / kTile, [&](int tile_y) {
-    std::vector<float> fine(3 * kTile * kTile), coarse(fine.size() / 4);
+    std::vector<float> fine(3 * kTile * kTile / 4), coarse(fine.size());
     for (int tile_x = 0; tile_x < columns; ++tile_x) {
-      for (std::size_t y = 0; y < kTile; ++y) {
-        const std::uint8_t* code = &rgb[3 * ((static_cast<std::size_t>(tile_y) * kTile + y) * width + tile_x * kTile)];
-        for (std::size_t i = 0; i < 3 * kTile; ++i) fine[3 * kTile * y + i] = linear_of_code[code[i]];
-      }
-      for (int level = 1, side = kTile / 2; level <= kTileLevels; ++level, side /= 2) {
-        const std::size_t row = 6 * static_cast<std::size_t>(side);  // of the finer level
-        float* to = coarse.data();
+      // Into `to` from the finer level's value i of row y, at(y, i).
+      const auto halve = [&](int level, const auto& at, float* to) {
+        const int side = kTile >> level;
         for (int y = 0; y < side; ++y) {
-          const float* from = &fine[2 * row * static_cast<std::size_t>(y)];
-          std::uint32_t* texel = level < kTileLevels ? texels(level, tile_x * side, tile_y * side + y) : nullptr;
-          for (int x = 0; x < side; ++x, from += 6, to += 3) {
-            for (int c = 0; c < 3; ++c)
-              to[c] = 0.5f * (0.5f * from[c] + 0.5f * from[c + 3]) +
-                      0.5f * (0.5f * from[row + c] + 0.5f * from[row + c + 3]);
-            if (texel != nullptr) *texel++ = Packed(to, roots);
+          for (int x = 0; x < side; ++x, to += 3) {
+            for (int c = 0; c < 3; ++c) {
+              const int i = 6 * x + c;
+              to[c] = 0.5f * (0.5f * at(2 * y, i) + 0.5f * at(2 * y, i + 3)) +
+                      0.5f * (0.5f * at(2 * y + 1, i) + 0.5f * at(2 * y + 1, i + 3));
+            }
           }
+          if (level < kTileLevels) Pack(to - 3 * side, side, roots, texels(level, tile_x * side, tile_y * side + y));
         }
-        std::swap(fine, coarse);  // an even number of times
+      };
+      const std::uint8_t* codes = &rgb[3 * (static_cast<std::size_t>(tile_y) * kTile * width + tile_x * kTile)];
+      halve(
+          1, [&](int y, int i) { return linear_of_code[codes[3 * y * width + i]]; }, fine.data());
+      for (int level = 2; level <= kTileLevels; ++level) {
+        halve(
+            level, [&](int y, int i) { return fine[6 * (kTile >> level) * y + i]; }, coarse.data());
+        std::swap(fine, coarse);
       }
       std::copy_n(fine.data(), 3, &out[3 * static_cast<std::size_t>(tile_y * columns + tile_x)]);
     }
@@ -154,7 +164,7 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
   for (std::size_t i = 0; i < 256; ++i) {
     const double code = static_cast<double>(i) / 255.0;
     linear_of_code[i] = static_cast<float>(roots ? SrgbToLinear(code) : code);
-    texel_of_code[i] = Encode(linear_of_code[i], roots);
+    texel_of_code[i] = static_cast<std::uint32_t>(Encode(linear_of_code[i], roots));
   }
   std::uint32_t* const texels = owner_.get();
   const auto place = [&](std::size_t l, int x, int y) { return &texels[levels_[l].RowBegin(y) + x]; };
@@ -175,9 +185,8 @@ Texture::Texture(std::string name, int width, int height, std::span<const std::u
   for (; l < levels_.size(); ++l) {
     const TextureLevel& level = levels_[l];
     tbb::parallel_for(0, level.height, [&](int y) {
-      const float* from = &linear[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width)];
-      for (std::uint32_t* texel = place(l, 0, y); texel != place(l, level.width, y); ++texel, from += 3)
-        *texel = Packed(from, roots);
+      Pack(&linear[3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(level.width)], level.width, roots,
+           place(l, 0, y));
     });
     if (l + 1 < levels_.size())
       linear = Shrunk([&](std::size_t i) { return linear[i]; }, level.width, level.height, levels_[l + 1].width,

@@ -16,6 +16,8 @@ namespace {
 
 using std::chrono::steady_clock;
 
+constexpr int kBlock = 1 << 20;  // of an answer
+
 ExitStatus StatusOf(int status) {
   return WIFSIGNALED(status) ? ExitStatus{0, WTERMSIG(status)} : ExitStatus{WEXITSTATUS(status), 0};
 }
@@ -58,6 +60,7 @@ ChildProcess::ChildProcess(const std::function<int(int answer)>& work) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
   answer_ = Descriptor(ends[0]);
+  fcntl(*answer_, F_SETPIPE_SZ, kBlock);  // a smaller pipe is slower
   Descriptor to_parent(ends[1]);
   pid_ = ForkTied(SIGKILL);
   if (pid_ < 0) throw std::system_error(errno, std::generic_category(), "cannot start a process");
@@ -71,7 +74,7 @@ ChildProcess::ChildProcess(const std::function<int(int answer)>& work) {
 }
 
 std::optional<std::string> ChildProcess::ReadAnswer(SteadyTime until) const {
-  std::string answer, block(1 << 16, 0);
+  std::string answer, block(kBlock, 0);
   for (;;) {
     pollfd end{*answer_, POLLIN, 0};
     const auto left = Left<std::chrono::milliseconds>(until).count();

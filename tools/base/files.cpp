@@ -60,7 +60,12 @@ int WriteAll(int file, std::string_view bytes) {
 std::optional<std::string> ReadFile(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return std::nullopt;
-  return std::string{std::istreambuf_iterator<char>(stream), {}};
+  std::error_code unknown;  // of what has no size
+  const std::uintmax_t size = fs::file_size(file, unknown);
+  std::string bytes(unknown ? 0 : size, 0);
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes.append(std::istreambuf_iterator<char>(stream), {});
 }
 
 std::string UnfinishedName(const std::string& name) { return "." + name + ".part"; }

@@ -18,6 +18,8 @@ DecodedImage Decode(const std::string& bytes) {
   return DecodeImage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
 }
 
+std::vector<std::uint8_t> Rgb(const DecodedImage& image) { return {image.rgb.begin(), image.rgb.end()}; }
+
 std::string Complaint(const std::string& bytes) {
   try {
     Decode(bytes);
@@ -98,9 +100,9 @@ TEST(ImageFile, LinearValuesOfRadianceAreCoded) {
   std::vector<std::uint8_t> bytes;
   cv::imencode(".hdr", cv::Mat(2, 2, CV_32FC3, cv::Scalar(1.5, 0.001, 0.2158605)), bytes);
   const DecodedImage image = DecodeImage(bytes);
-  EXPECT_NEAR(image.rgb.at(0), 128, 3);
-  EXPECT_NEAR(image.rgb.at(1), 3, 3);
-  EXPECT_EQ(image.rgb.at(2), 255);
+  EXPECT_NEAR(image.rgb[0], 128, 3);
+  EXPECT_NEAR(image.rgb[1], 3, 3);
+  EXPECT_EQ(image.rgb[2], 255);
 }
 
 TEST(ImageFile, NotAPicture) {
@@ -132,23 +134,23 @@ TEST(ImageFile, TgaOfEveryKind) {
   const std::vector<std::uint8_t> from_top = {0, 0, 255, 0, 255, 0, 255, 0, 0, 9, 9, 9, 0, 0, 0, 255, 255, 255};
   const std::vector<std::uint8_t> from_below = {9, 9, 9, 0, 0, 0, 255, 255, 255, 0, 0, 255, 0, 255, 0, 255, 0, 0};
   const std::vector<std::uint8_t> from_right = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 9, 9, 9};
-  EXPECT_EQ(DecodeImage(Tga(2, 24, 32, from_top)).rgb, rgb);
-  EXPECT_EQ(DecodeImage(Tga(2, 24, 0, from_below)).rgb, rgb);
-  EXPECT_EQ(DecodeImage(Tga(2, 24, 48, from_right)).rgb, rgb);
+  EXPECT_EQ(Rgb(DecodeImage(Tga(2, 24, 32, from_top))), rgb);
+  EXPECT_EQ(Rgb(DecodeImage(Tga(2, 24, 0, from_below))), rgb);
+  EXPECT_EQ(Rgb(DecodeImage(Tga(2, 24, 48, from_right))), rgb);
   // Packets: three raw pixels, one raw pixel, a run of two.
   const std::vector<std::uint8_t> packets = {2, 0, 0, 255, 0, 255, 0, 255, 0, 0, 0, 9, 9, 9, 0x81, 7, 7, 7};
   const DecodedImage runs = DecodeImage(Tga(10, 24, 32, packets));
-  EXPECT_EQ(runs.rgb, (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 9, 9, 7, 7, 7, 7, 7, 7}));
+  EXPECT_EQ(Rgb(runs), (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 9, 9, 9, 7, 7, 7, 7, 7, 7}));
   EXPECT_THROW(DecodeImage(Tga(10, 24, 32, {packets.begin(), packets.end() - 1})), std::runtime_error);
   const DecodedImage alpha = DecodeImage(
       Tga(2, 32, 40, {0, 0, 255, 1, 0, 255, 0, 2, 255, 0, 0, 3, 9, 9, 9, 4, 0, 0, 0, 5, 255, 255, 255, 6}), true);
-  EXPECT_EQ(alpha.rgb, rgb);
+  EXPECT_EQ(Rgb(alpha), rgb);
   EXPECT_EQ(alpha.alpha, (std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6}));
   EXPECT_TRUE(DecodeImage(Tga(2, 32, 32, std::vector<std::uint8_t>(24)), true).alpha.empty()) << "no bits of alpha";
-  EXPECT_EQ(DecodeImage(Tga(3, 8, 32, {1, 2, 3, 4, 5, 6})).rgb,
+  EXPECT_EQ(Rgb(DecodeImage(Tga(3, 8, 32, {1, 2, 3, 4, 5, 6}))),
             (std::vector<std::uint8_t>{1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5, 5, 5, 6, 6, 6}));
   const std::vector<std::uint8_t> palette = {0, 0, 255, 0, 255, 0, 0, 1, 0, 1, 1, 0};
-  EXPECT_EQ(DecodeImage(Tga(1, 8, 32, palette, 2)).rgb,
+  EXPECT_EQ(Rgb(DecodeImage(Tga(1, 8, 32, palette, 2))),
             (std::vector<std::uint8_t>{255, 0, 0, 0, 255, 0, 255, 0, 0, 0, 255, 0, 0, 255, 0, 255, 0, 0}));
   EXPECT_THROW(DecodeImage(Tga(1, 8, 32, {0, 0, 255, 0, 255, 0, 0, 1, 2, 1, 1, 0}, 2)), std::runtime_error);
   const DecodedImage five = DecodeImage(Tga(2, 16, 32, {0, 0x7c, 0xe0, 3, 0x1f, 0, 0, 0, 0, 0, 0xff, 0x7f}));
