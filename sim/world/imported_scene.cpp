@@ -18,14 +18,27 @@ std::runtime_error Broken() { return std::runtime_error("the importer's answer i
 class Writer {
  public:
   static constexpr bool kReads = false;
+  explicit Writer(const ByteSink& sink) : sink_(sink) {}
+  // Long lists are not copied.
   void Copy(void* from, std::size_t size) {
-    const auto* bytes = static_cast<const std::uint8_t*>(from);
-    bytes_.insert(bytes_.end(), bytes, bytes + size);
+    const std::span bytes(static_cast<const std::uint8_t*>(from), size);
+    if (size >= kLong) {
+      Flush();
+      return sink_(bytes);
+    }
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    if (bytes_.size() >= kLong) Flush();
+  }
+  void Flush() {
+    sink_(bytes_);
+    bytes_.clear();
   }
   void CheckCount(std::uint64_t /*count*/, std::size_t /*least*/) const {}
-  std::vector<std::uint8_t> Take() { return std::move(bytes_); }
 
  private:
+  static constexpr std::size_t kLong = 1 << 16;
+
+  const ByteSink& sink_;
   std::vector<std::uint8_t> bytes_;
 };
 
@@ -166,10 +179,10 @@ MeshCounts CountsOf(const ImportedScene& scene) {
   return counts;
 }
 
-std::vector<std::uint8_t> ToBytes(const MeshImport& import) {
-  Writer out;
+void WriteBytes(const MeshImport& import, const ByteSink& sink) {
+  Writer out(sink);
   Pass(out, const_cast<MeshImport&>(import));  // a writer changes nothing
-  return out.Take();
+  out.Flush();
 }
 
 MeshImport ImportFromBytes(std::span<const std::uint8_t> bytes) {

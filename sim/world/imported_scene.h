@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <glm/mat3x2.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
@@ -98,7 +99,8 @@ struct MeshCounts {
 };
 MeshCounts CountsOf(const ImportedScene& scene);
 
-std::vector<std::uint8_t> ToBytes(const MeshImport& import);
+using ByteSink = std::function<void(std::span<const std::uint8_t>)>;
+void WriteBytes(const MeshImport& import, const ByteSink& sink);
 // Throws std::runtime_error for truncated bytes and invalid indices.
 MeshImport ImportFromBytes(std::span<const std::uint8_t> bytes);
 

@@ -71,9 +71,10 @@ void SilenceProcess() {
   Limit(RLIMIT_CORE, 0);
 }
 
+constexpr std::uintmax_t kMostReserved = std::uintmax_t{1} << 30;  // for an answer [bytes]
 constexpr std::chrono::seconds kPatience(600);  // of the waiting process: a sleeping importer uses no processor time
 
-std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
+MeshImport Import(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
   MeshImport import;
   MeshFiles files(file, folders, import);
   const std::string extension = LowerExtension(file);
@@ -90,7 +91,7 @@ std::vector<std::uint8_t> Import(const fs::path& file, const std::vector<fs::pat
     import.problem = "cannot be read: it needs more memory than a file of this size may";
   }
   if (!import.problem.empty()) import.scene = {};
-  return ToBytes(import);
+  return import;
 }
 
 std::string WhyItEnded(const base::ExitStatus& end, bool in_time) {
@@ -106,7 +107,11 @@ base::ChildProcess StartImporter(const fs::path& file, const std::vector<fs::pat
   try {
     return base::ChildProcess([&](int answer) {
       SilenceProcess();
-      return base::WriteAll(answer, base::AsText(Import(file, folders, only_cameras)));
+      int error = 0;
+      WriteBytes(Import(file, folders, only_cameras), [&](std::span<const std::uint8_t> bytes) {
+        if (error == 0) error = base::WriteAll(answer, base::AsText(bytes));
+      });
+      return error;
     });
   } catch (const std::system_error& error) {
     throw std::runtime_error(file.string() + ": no importer: " + error.what());
@@ -162,7 +167,10 @@ void MeshFiles::Missing(const fs::path& file) {
 
 MeshImport ImportMesh(const fs::path& file, const std::vector<fs::path>& folders, bool only_cameras) {
   const base::ChildProcess importer = StartImporter(file, folders, only_cameras);
-  const std::optional<std::string> answer = importer.ReadAnswer(std::chrono::steady_clock::now() + kPatience);
+  std::error_code unknown;
+  const std::uintmax_t size = fs::file_size(file, unknown);
+  const std::optional<std::string> answer = importer.ReadAnswer(
+      std::chrono::steady_clock::now() + kPatience, unknown ? 0 : std::min<std::uintmax_t>(2 * size, kMostReserved));
   if (!answer) importer.Kill();
   const base::ExitStatus end = importer.Wait();
   MeshImport import;

@@ -47,8 +47,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   sim::MeshFiles allowed(fuzz::Folder() / format.read, no_folders, import);
   try {
     format.reader(allowed, import);
-    if (import.problem.empty() && sim::CountsOf(import.scene).Problem().empty())
-      sim::ImportFromBytes(sim::ToBytes(import));
+    if (import.problem.empty() && sim::CountsOf(import.scene).Problem().empty()) {
+      std::vector<std::uint8_t> all;
+      sim::WriteBytes(import, [&](fuzz::Bytes bytes) { all.insert(all.end(), bytes.begin(), bytes.end()); });
+      sim::ImportFromBytes(all);
+    }
   } catch (const sim::OlderGltf&) {  // assimp's
   } catch (const std::bad_alloc&) {
   } catch (const std::exception& error) {

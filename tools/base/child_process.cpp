@@ -73,8 +73,9 @@ ChildProcess::ChildProcess(const std::function<int(int answer)>& work) {
   }
 }
 
-std::optional<std::string> ChildProcess::ReadAnswer(SteadyTime until) const {
+std::optional<std::string> ChildProcess::ReadAnswer(SteadyTime until, std::size_t expected) const {
   std::string answer, block(kBlock, 0);
+  answer.reserve(expected);
   for (;;) {
     pollfd end{*answer_, POLLIN, 0};
     const auto left = Left<std::chrono::milliseconds>(until).count();
