@@ -15,10 +15,13 @@ double PerDof(const std::optional<evaluation::NeesSummary>& nees) {
   return nees && nees->frames > 0 ? nees->mean / nees->dof : kNaN;
 }
 
+constexpr std::size_t kLeastPairs = 3;  // fewer leave no error after an alignment
+
 SystemSummary ErrorsOf(const std::string& name, const RunMetrics& run, const evaluation::TrajectoryErrors& errors) {
   SystemSummary s;
   s.system = name;
   s.runs = 1;
+  if (errors.pairs < kLeastPairs) return s;
   s.ate_m = s.ate_worst_m = errors.sim3.position.rmse;
   s.ate_share_of_path = s.ate_m / run.metrics.path_length_m;
   s.ate_se3_m = errors.se3.position.rmse;
@@ -35,7 +38,7 @@ SystemSummary MedianOf(const Runs& runs) {
   S s = runs.front();
   s.runs = runs.size();
   s.ate_worst_m = 0;
-  for (const S& run : runs) s.ate_worst_m = std::max(s.ate_worst_m, run.ate_m);
+  for (const S& run : runs) s.ate_worst_m = std::isnan(run.ate_m) ? kNaN : std::max(s.ate_worst_m, run.ate_m);
   for (double S::*const member : {&S::ate_m, &S::ate_live_m, &S::ate_share_of_path, &S::ate_se3_m, &S::scale, &S::rpe_m,
                                   &S::rpe_rad, &S::pose_coverage, &S::tracked_coverage, &S::nees_pose_per_dof,
                                   &S::nees_pose_scale_free_per_dof, &S::nees_velocity_per_dof, &S::nis_per_dof}) {
@@ -52,7 +55,7 @@ SystemSummary MedianOf(const Runs& runs) {
 SystemSummary Summarise(const RunMetrics& run) {
   const evaluation::Metrics& m = run.metrics;
   SystemSummary s = ErrorsOf(run.run.system, run, m.errors);
-  if (m.live) s.ate_live_m = m.live->sim3.position.rmse;
+  if (m.live && m.live->pairs >= kLeastPairs) s.ate_live_m = m.live->sim3.position.rmse;
   if (m.coverage) {
     s.pose_coverage = m.coverage->pose_coverage();
     s.tracked_coverage = m.coverage->tracked_coverage().value_or(kNaN);

@@ -72,6 +72,20 @@ TEST(TextSummary, ShowsMediansOfEachSystemAndTheBaselines) {
   EXPECT_EQ(TextSummary({}), "");
 }
 
+// Two poses are aligned without an error, whatever the estimate.
+TEST(TextSummary, HasNoErrorOfFewerThanThreePoses) {
+  const evaluation::TemporaryFolder folder;
+  auto judged = WriteFakeResult(folder.path(), {});
+  for (const std::size_t pairs : {3U, 2U}) {
+    for (RunMetrics& run : judged) run.metrics.errors.pairs = run.metrics.constant_pose.pairs = pairs;
+    judged[1].metrics.live->pairs = pairs;
+    const SystemSummary system = SummariseSystems(judged)[0], still = SummariseBaselines(judged)[0];
+    for (const double ate :
+         {system.ate_m, system.ate_worst_m, system.ate_share_of_path, system.ate_live_m, still.ate_m})
+      EXPECT_EQ(std::isnan(ate), pairs == 2);
+  }
+}
+
 // Seeds with paths, and baselines, of their own: the table has the median, as the terminal does.
 TEST(RunTable, HasTheBaselinesOfTheSummary) {
   const evaluation::TemporaryFolder folder;
