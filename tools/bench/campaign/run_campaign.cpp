@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
-#include <ranges>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -171,7 +170,8 @@ void Conclude(const CampaignWork& work, const CampaignOptions& options) {
 void RemoveSystems(const Campaign& campaign, const CampaignOptions& options) {
   for (const std::string& name : options.redo) {
     if (std::ranges::find(campaign.systems, name, &SystemEntry::name) != campaign.systems.end()) continue;
-    const auto names = campaign.systems | std::views::transform(&SystemEntry::name);
+    std::vector<std::string> names;
+    for (const SystemEntry& system : campaign.systems) names.push_back(system.name);
     throw BadInput(fmt::format("--redo: there is no system '{}'; there are '{}'", name, fmt::join(names, "', '")));
   }
   for (std::int64_t task = 0; task < Tasks(campaign); ++task) {
