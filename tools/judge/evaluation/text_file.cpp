@@ -68,7 +68,7 @@ void Lines::Advance() {
     if (first == std::string::npos) continue;
     if (separator_ != '\n' && base::IsComment(std::string_view(text_).substr(first))) continue;
     Split(text_, separator_, line_.tokens);
-    return;
+    if (!line_.tokens.empty()) return;
   }
   if (stream_.bad()) throw InputError({file_.string() + ": cannot be read"});
   at_end_ = true;

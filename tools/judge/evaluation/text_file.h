@@ -41,7 +41,8 @@ struct Line {
   std::vector<Token> tokens;
 };
 
-// The lines of a file that carry data: no empty ones, none that starts with '#'. Read one at a time, once:
+// The lines of a file that carry data: no empty ones, none of separators alone, none that starts with '#'. Read one at
+// a time, once:
 //   for (const Line& line : Lines(file)) ...
 // A line is valid until the next one is read.
 class Lines {

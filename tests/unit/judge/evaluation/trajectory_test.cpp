@@ -108,6 +108,12 @@ TEST(ReadTrajectory, OtherKindsAreRefusedInOneSentence) {
   }
 }
 
+// Rows that a spreadsheet exports without values.
+TEST(ReadTrajectory, LinesOfSeparatorsAloneAreEmpty) {
+  EXPECT_EQ(Complaint("1,0,0,0,0,0,0,1\n,,,,,,,\n2,0,0,0,0,0,0,1\n;\n"), "");
+  EXPECT_THAT(Complaint(",,,\n"), HasSubstr("holds no pose"));
+}
+
 TEST(ReadTrajectory, RefusesAnEmptyFile) { EXPECT_THAT(Complaint("# nothing\n"), HasSubstr("holds no pose")); }
 
 TEST(ReadTrajectory, EqualStamps) {
