@@ -6,7 +6,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -78,8 +77,7 @@ void CheckScene(const Scene& scene) {
 RayScene::RayScene(const Scene& scene) {
   CheckScene(scene);
   AppendTextures(scene);
-  std::size_t vertices = 4 * scene.lights.size() + 1,
-              triangles = 2 * scene.lights.size();  // Embree reads 16 bytes of each
+  std::size_t vertices = 4 * scene.lights.size(), triangles = 2 * scene.lights.size();  // of lamps, at most
   const auto take_in = [&](const std::vector<Mesh>& meshes) {
     for (const Mesh& mesh : meshes) {
       vertices += mesh.positions.size();
@@ -91,7 +89,7 @@ RayScene::RayScene(const Scene& scene) {
   };
   take_in(scene.meshes);
   for (const MovingObject& object : scene.objects) take_in(object.meshes);
-  positions_.reserve(vertices);
+  positions_.reserve(vertices + 1);  // Embree reads 16 bytes of each
   triangles_.reserve(triangles);
   shading_.reserve(triangles);
   if (any_normals_) normals_.reserve(triangles);

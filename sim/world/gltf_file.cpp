@@ -171,8 +171,9 @@ GltfFile::GltfFile(MeshFiles& files, MeshImport& import) : files_(files), import
       at += 8 + chunk.size();
     }
     if (binary) {
-      bytes.resize(static_cast<std::size_t>(binary->data() - all.data()) + binary->size());
-      binary_ = std::move(bytes.erase(0, bytes.size() - binary->size()));
+      bytes.erase(0, static_cast<std::size_t>(binary->data() - all.data()));
+      bytes.resize(binary->size());
+      binary_ = std::move(bytes);
     }
   } else {
     text = base::WithoutMark(bytes);

@@ -16,7 +16,7 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr int kBlock = 1 << 20;  // of an answer
+constexpr std::size_t kPipe = 1 << 16, kLargePipe = 1 << 20;  // Linux gives the first [bytes]
 
 ExitStatus StatusOf(int status) {
   return WIFSIGNALED(status) ? ExitStatus{0, WTERMSIG(status)} : ExitStatus{WEXITSTATUS(status), 0};
@@ -60,7 +60,6 @@ ChildProcess::ChildProcess(const std::function<int(int answer)>& work) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
   answer_ = Descriptor(ends[0]);
-  fcntl(*answer_, F_SETPIPE_SZ, kBlock);  // a smaller pipe is slower
   Descriptor to_parent(ends[1]);
   pid_ = ForkTied(SIGKILL);
   if (pid_ < 0) throw std::system_error(errno, std::generic_category(), "cannot start a process");
@@ -74,7 +73,8 @@ ChildProcess::ChildProcess(const std::function<int(int answer)>& work) {
 }
 
 std::optional<std::string> ChildProcess::ReadAnswer(SteadyTime until, std::size_t expected) const {
-  std::string answer, block(kBlock, 0);
+  std::string answer, block(std::clamp(expected, kPipe, kLargePipe), 0);
+  if (block.size() > kPipe) fcntl(*answer_, F_SETPIPE_SZ, static_cast<int>(block.size()));  // a small one is slower
   answer.reserve(expected);
   for (;;) {
     pollfd end{*answer_, POLLIN, 0};

@@ -53,7 +53,7 @@ class ChildProcess {
   explicit ChildProcess(const std::function<int(int answer)>& work);
 
   // Output of the child, and of those that inherit its pipe, until all of them have closed it; none at `until`.
-  // `expected` bytes are reserved.
+  // For `expected` bytes, memory and a larger pipe are reserved.
   std::optional<std::string> ReadAnswer(SteadyTime until = SteadyTime::max(), std::size_t expected = 0) const;
 
   void Kill() const { kill(pid_, SIGKILL); }

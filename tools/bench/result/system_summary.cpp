@@ -15,13 +15,11 @@ double PerDof(const std::optional<evaluation::NeesSummary>& nees) {
   return nees && nees->frames > 0 ? nees->mean / nees->dof : kNaN;
 }
 
-constexpr std::size_t kLeastPairs = 3;  // fewer leave no error after an alignment
-
 SystemSummary ErrorsOf(const std::string& name, const RunMetrics& run, const evaluation::TrajectoryErrors& errors) {
   SystemSummary s;
   s.system = name;
   s.runs = 1;
-  if (errors.pairs < kLeastPairs) return s;
+  if (!errors.determines_alignment()) return s;
   s.ate_m = s.ate_worst_m = errors.sim3.position.rmse;
   s.ate_share_of_path = s.ate_m / run.metrics.path_length_m;
   s.ate_se3_m = errors.se3.position.rmse;
@@ -55,7 +53,7 @@ SystemSummary MedianOf(const Runs& runs) {
 SystemSummary Summarise(const RunMetrics& run) {
   const evaluation::Metrics& m = run.metrics;
   SystemSummary s = ErrorsOf(run.run.system, run, m.errors);
-  if (m.live && m.live->pairs >= kLeastPairs) s.ate_live_m = m.live->sim3.position.rmse;
+  if (m.live && m.live->determines_alignment()) s.ate_live_m = m.live->sim3.position.rmse;
   if (m.coverage) {
     s.pose_coverage = m.coverage->pose_coverage();
     s.tracked_coverage = m.coverage->tracked_coverage().value_or(kNaN);

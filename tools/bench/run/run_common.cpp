@@ -50,7 +50,7 @@ void ForEach(std::size_t count, int jobs, const std::function<void(std::size_t)>
 }
 
 std::string AlignmentProblem(const evaluation::Metrics& metrics) {
-  if (metrics.errors.pairs >= 3) return "";
+  if (metrics.errors.determines_alignment()) return "";
   return fmt::format(
       "{} of the poses have a true one within {:.0f} ms: fewer than three determine no alignment; are the stamps of "
       "both in seconds of one clock?",

@@ -40,6 +40,7 @@ struct TrajectoryErrors {
   Rpe rpe_unscaled;                 // as they are
   // How many pairs the truth offers on the frames of the sequence; rpe.pairs has those answered
   std::size_t rpe_pairs_offered = 0;
+  bool determines_alignment() const { return pairs >= 3; }  // fewer leave no error after it
   const Ate& Aligned(Alignment alignment) const;
 };
 

@@ -21,6 +21,7 @@
 
 #include "sim/world/scene.h"
 #include "tests/unit/sim/world/files.h"
+#include "tests/unit/sim/world/pairwise.h"
 
 namespace sim::test {
 namespace {
@@ -331,20 +332,14 @@ TEST(GltfProperty, RandomFilesAreWhatTheyDescribe) {
   folder.Write("a picture.png", EncodeColor(".png", 10, 20, 30));  // 4 x 4: uv are half a texel or more from an edge
   const char* keep = std::getenv("VOBENCH_KEEP_GLTF");             // for tools/dev/validate-gltf
   std::mt19937 random(20);
-  std::set<std::array<int, 4>> pairs;
+  PairwiseChoices pairwise(Choices::kCounts);
   constexpr int kFiles = 2000, kAtOnce = 50;
   for (int done = 0; done < kFiles; done += kAtOnce) {
     WorldDescription world;
     std::vector<std::vector<Triangle>> expected;
     std::vector<Choices> made;
     for (int k = 0; k < kAtOnce; ++k) {
-      Choices choices;
-      for (std::size_t i = 0; i < choices.of.size(); ++i)
-        choices.of[i] = std::uniform_int_distribution<int>(0, Choices::kCounts[i] - 1)(random);
-      for (std::size_t i = 0; i < choices.of.size(); ++i) {
-        for (std::size_t j = i + 1; j < choices.of.size(); ++j)
-          pairs.insert({static_cast<int>(i), choices.of[i], static_cast<int>(j), choices.of[j]});
-      }
+      const Choices choices{pairwise.Draw(random)};
       FileMaker maker(choices, random);
       maker.Make();
       const std::string name = std::to_string(done + k);
@@ -377,12 +372,7 @@ TEST(GltfProperty, RandomFilesAreWhatTheyDescribe) {
     }
   }
   if (keep != nullptr) std::filesystem::copy(folder.path(), keep, std::filesystem::copy_options::recursive);
-  std::size_t all = 0;
-  for (std::size_t i = 0; i < Choices::kCounts.size(); ++i) {
-    for (std::size_t j = i + 1; j < Choices::kCounts.size(); ++j)
-      all += static_cast<std::size_t>(Choices::kCounts[i] * Choices::kCounts[j]);
-  }
-  EXPECT_EQ(pairs.size(), all);
+  EXPECT_EQ(pairwise.drawn(), pairwise.all());
 }
 
 }  // namespace

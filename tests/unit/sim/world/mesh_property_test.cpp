@@ -8,13 +8,13 @@
 #include <cstring>
 #include <glm/geometric.hpp>
 #include <random>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "sim/world/scene.h"
 #include "sim/world/texture.h"
 #include "tests/unit/sim/world/files.h"
+#include "tests/unit/sim/world/pairwise.h"
 
 namespace sim::test {
 namespace {
@@ -33,6 +33,7 @@ class Random {
  public:
   double Real(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
   int Whole(int count) { return std::uniform_int_distribution<int>(0, count - 1)(engine_); }
+  std::mt19937& engine() { return engine_; }
 
   // A convex polygon; its numbers are floats, and multiples of 1/255 where they are colours.
   Face Polygon(int sides, bool one_color) {
@@ -55,26 +56,6 @@ class Random {
 
  private:
   std::mt19937 engine_{30};
-};
-
-// One number below `counts` for each of the choices.
-template <std::size_t n>
-struct Choices {
-  std::array<int, n> of{};
-
-  void Draw(const std::array<int, n>& counts, Random& random, std::set<std::array<int, 4>>& pairs) {
-    for (std::size_t i = 0; i < n; ++i) of[i] = random.Whole(counts[i]);
-    for (int i = 0; i < static_cast<int>(n); ++i) {
-      for (int j = i + 1; j < static_cast<int>(n); ++j)
-        pairs.insert({i, of[static_cast<std::size_t>(i)], j, of[static_cast<std::size_t>(j)]});
-    }
-  }
-  static std::size_t Pairs(const std::array<int, n>& counts) {
-    std::size_t all = 0;
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = i + 1; j < n; ++j) all += static_cast<std::size_t>(counts[i] * counts[j]);
-    return all;
-  }
 };
 
 struct Expected {
@@ -217,8 +198,7 @@ class PlyFile {
     for (int f = 0; f < 5; ++f) expected.faces.push_back(random.Polygon(strips ? 3 : 3 + c[11], of_faces));
     if (c[4] == 2) expected.faces[0].corners[0].color.r = 1;  // so that 65535 occurs
     expected.has_uvs = wedge || uv, expected.has_normals = c[3] == 1;
-    expected.has_colors = false;  // the picture's place
-    const bool picture = expected.has_uvs;
+    const bool picture = expected.has_uvs;  // it takes the place of colours
     expected.has_colors = (of_faces || (c[4] > 0 && c[4] < 4)) && !picture;
     const std::string real = c[1] == 0 ? "float" : "float64";
     const std::string color_type = c[4] == 2 ? "ushort" : c[4] == 3 ? "float" : "uchar";
@@ -326,18 +306,18 @@ void ExpectDescribed(const std::array<int, n>& counts, const Make& make) {
   constexpr int kFiles = 2000, kAtOnce = 50;
   const Folder folder;
   Random random;
-  std::set<std::array<int, 4>> pairs;
+  PairwiseChoices pairwise(counts);
   for (int done = 0; done < kFiles; done += kAtOnce) {
     WorldDescription world;
     std::vector<Expected> expected;
-    std::vector<Choices<n>> made;
+    std::vector<std::array<int, n>> made;
     for (int k = 0; k < kAtOnce; ++k) {
-      made.emplace_back().Draw(counts, random, pairs);
+      made.push_back(pairwise.Draw(random.engine()));
       const std::string name = std::to_string(done + k);
       folder.Write(name + "/a picture.png", EncodeColor(".png", 10, 20, 30));
       folder.Write(name + "/materials/a picture.png", EncodeColor(".png", 10, 20, 30));
       std::filesystem::path file;
-      expected.push_back(make(made.back().of, random, folder, name, file));
+      expected.push_back(make(made.back(), random, folder, name, file));
       world.meshes.push_back({file, {}, {1, 0, 0, 0}, 1.0, {}, {}});
     }
     const Scene scene = LoadScene(world);
@@ -345,7 +325,7 @@ void ExpectDescribed(const std::array<int, n>& counts, const Make& make) {
       const auto [first, last] = std::equal_range(scene.mesh_entries.begin(), scene.mesh_entries.end(), k);
       const auto begin = static_cast<std::size_t>(first - scene.mesh_entries.begin()),
                  end = static_cast<std::size_t>(last - scene.mesh_entries.begin());
-      ASSERT_EQ(expected[k].Difference(scene, begin, end), "") << testing::PrintToString(made[k].of);
+      ASSERT_EQ(expected[k].Difference(scene, begin, end), "") << testing::PrintToString(made[k]);
       // Control: the same with one number of the description changed.
       const auto differs = [&](const auto& change) {
         Expected other = expected[k];
@@ -359,7 +339,7 @@ void ExpectDescribed(const std::array<int, n>& counts, const Make& make) {
       ASSERT_EQ(differs([](Face& face, Corner&) { face.material = 0; }), expected[k].base_colors.size() > 1);
     }
   }
-  EXPECT_EQ(pairs.size(), Choices<n>::Pairs(counts));
+  EXPECT_EQ(pairwise.drawn(), pairwise.all());
 }
 
 TEST(MeshProperty, RandomObjFilesAreWhatTheyDescribe) {
