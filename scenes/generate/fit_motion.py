@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Fits the motion models `handheld` and `drone` to recorded paths and prints sim/motion/gait_table.inc:
-  fit_motion.py DATA > sim/motion/gait_table.inc          (DATA/trajectories/{tum,euroc}_*.txt)
+"""Fits the motion models `handheld` and `drone` to recorded paths and prints sim/motion/carrier_motion_table.inc:
+  fit_motion.py DATA > sim/motion/carrier_motion_table.inc          (DATA/trajectories/{tum,euroc}_*.txt)
 Also prints to stderr, for each recording, the values of the keys that go with it. Debian: python3-numpy, python3-scipy."""
 import sys
 
@@ -9,9 +9,9 @@ from scipy.optimize import least_squares
 
 from motion_spectra import RECORDINGS, acceleration, centres, in_bands, rates, read, recordings, steps
 
-STEP, DAMPING, CORNER = 0.01, 0.3, {"handheld": 0.07, "drone": 0.07}  # [s], [1], of the course [Hz]: sim/motion/gait.h
+STEP, DAMPING, CORNER = 0.01, 0.3, {"handheld": 0.07, "drone": 0.07}  # [s], [1], of the course [Hz]: sim/motion/carrier_motion.h
 # Set by hand so that percentiles of speed and turn rate agree (check_motion.py): [s], [1], [Hz], [1], [m], [s].
-BURST, EFFORT, EFFORT_HZ, EVENNESS, CLIMB, AHEAD = 1.0, {"handheld": 0.18, "drone": 0.33}, 0.03, {"handheld": 0.1, "drone": 3.0}, {"handheld": 0.2, "drone": 0.8}, {"handheld": 1.5, "drone": 2.0}
+BURST, ACTIVITY, ACTIVITY_HZ, EVENNESS, CLIMB, AHEAD = 1.0, {"handheld": 0.18, "drone": 0.33}, 0.03, {"handheld": 0.1, "drone": 3.0}, {"handheld": 0.2, "drone": 0.8}, {"handheld": 1.5, "drone": 2.0}
 COMPONENTS = 0.175 * 2 ** (np.arange(13) / 2)  # [Hz]
 
 
@@ -95,11 +95,11 @@ def row(values):
 
 
 if __name__ == "__main__":
-    print("// Made by scenes/generate/fit_motion.py from recordings; sim/motion/gait.h has the model. Do not edit.")
+    print("// Made by scenes/generate/fit_motion.py from recordings; sim/motion/carrier_motion.h has the model. Do not edit.")
     for kind, name in (("handheld", "kHandheld"), ("drone", "kDrone")):
         a, speed, turn, burst, _ = fit(sys.argv[1], kind)
-        print(f"constexpr GaitTable {name} = {{\n    .speed = {speed:.3g}, .turn_rate = {turn:.3g},")
+        print(f"constexpr CarrierMotionTable {name} = {{\n    .speed = {speed:.3g}, .turn_rate = {turn:.3g},")
         for key, values in zip(("linear", "linear_tremor", "angular", "angular_tremor"), a.reshape(4, -1)):
             print(f"    .{key} = {row(values)},")
-        print(f"    .burst = {burst:.2g}, .burst_s = {BURST}, .effort = {EFFORT[kind]}, .effort_hz = {EFFORT_HZ}, .course_hz = {CORNER[kind]},")
+        print(f"    .burst = {burst:.2g}, .burst_s = {BURST}, .activity = {ACTIVITY[kind]}, .activity_hz = {ACTIVITY_HZ}, .course_hz = {CORNER[kind]},")
         print(f"    .evenness = {EVENNESS[kind]}, .climb = {CLIMB[kind]}, .ahead_s = {AHEAD[kind]}}};")

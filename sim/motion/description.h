@@ -64,21 +64,21 @@ void Visit(V& v, SampledMotion& p) {
 // Ranges, and rules between several values. Keys are those of a trajectory.
 std::vector<settings::FieldProblem> Problems(SampledMotion motion);
 
-enum class GaitModel { handheld, drone, vehicle };
+enum class Carrier { handheld, drone, vehicle };
 
-// Random motion, of hands and drones fitted to recordings: sim/motion/gait.h.
-struct GaitParams {
-  GaitModel model = GaitModel::handheld;
+// Random motion, of hands and drones fitted to recordings: sim/motion/carrier_motion.h.
+struct CarrierMotionParams {
+  Carrier model = Carrier::handheld;
   std::optional<std::uint64_t> seed;       // none: the scenario's
   std::optional<double> speed, turn_rate;  // mean [m/s], [rad/s]; none: the recordings' medians, a shaken path's own
   double vehemence = 1, tremor = 1;
 };
 template <class V>
-void Visit(V& v, GaitParams& p) {
+void Visit(V& v, CarrierMotionParams& p) {
   v("seed", p.seed, {Range{0, 1e15}, "handheld, drone, vehicle, shake: of the path; none: the scenario's"});
   v("speed", p.speed,
     {Unit::speed, Range{0, 100}, "mean; none: recordings' median, a shaken path's own, vehicle 3 m/s"});
-  if (p.model == GaitModel::vehicle) return;
+  if (p.model == Carrier::vehicle) return;
   v("turn_rate", p.turn_rate, {Unit::angular_rate, Range{0, 20}, "the same of turns"});
   v("vehemence", p.vehemence, {Range{0, 10}, "of accelerations from 0.2 Hz on; 1: the recordings' mean at this speed"});
   v("tremor", p.tremor, {Range{0, 10}, "of those that do not depend on speed, mostly above 2 Hz; 1: the mean"});
@@ -86,7 +86,7 @@ void Visit(V& v, GaitParams& p) {
 
 // A camera carried through a world: sim/motion/roaming.h.
 struct RoamingMotion {
-  GaitParams gait;
+  CarrierMotionParams carrier;
   std::optional<Pose> start;                    // none: a free place is found
   double clearance = 0.25, turning_radius = 5;  // [m]
   std::optional<glm::dvec3> look_at;
@@ -94,9 +94,9 @@ struct RoamingMotion {
 // But for the start.
 template <class V>
 void Visit(V& v, RoamingMotion& p) {
-  Visit(v, p.gait);
+  Visit(v, p.carrier);
   v("clearance", p.clearance, {Unit::length, Range{0, 1e3}, "handheld, drone, vehicle, placing: auto: from surfaces"});
-  if (p.gait.model == GaitModel::vehicle)
+  if (p.carrier.model == Carrier::vehicle)
     return v("turning_radius", p.turning_radius, {Unit::length, Range::Positive(), "vehicle: the smallest"});
   v("look_at", p.look_at, {Unit::length, Range{-1e6, 1e6}, "handheld, drone: instead of where there is most to see"});
 }
@@ -109,7 +109,7 @@ struct KeyPose {
 // A spline through key poses: sim/motion/spline.h.
 struct ScriptedMotion {
   std::vector<KeyPose> keys;  // at least two, times increasing, the first at 0
-  std::optional<GaitParams> shake;
+  std::optional<CarrierMotionParams> shake;
 };
 
 // A recorded trajectory: sim/motion/recorded.h.
@@ -155,7 +155,7 @@ struct PathMotion {
   Swing azimuth, elevation, yaw, pitch, roll;
   glm::dvec3 move{0.0};  // [m]
   Swing along;           // how much of it
-  std::optional<GaitParams> shake;
+  std::optional<CarrierMotionParams> shake;
 };
 
 enum class PathKind { orbit, half_sphere, rpy, dolly };

@@ -57,7 +57,7 @@ Pose FreePlaceOf(std::vector<Pose> poses, double clearance, const Surroundings& 
   Pose best;
   double most = -1;
   for (std::uint32_t i = 0, found = 0; i < 20000 && found < 40; ++i) {
-    const Words words = RandomWords(seed, Stream::gait_place, i, 0, 0);
+    const Words words = RandomWords(seed, Stream::carrier_place, i, 0, 0);
     const glm::dvec3 share(Uniform(words[0]), Uniform(words[1]), Uniform(words[2]));
     const glm::dvec3 place = around.low() + share * (around.high() - around.low());
     const glm::dquat turn = Exp({0, kTurn * Uniform(words[3]), 0});

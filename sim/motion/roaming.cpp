@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "sim/motion/gait.h"
+#include "sim/motion/carrier_motion.h"
 #include "sim/motion/path.h"
 #include "sim/motion/placement.h"
 #include "sim/motion/so3.h"
@@ -18,7 +18,7 @@
 namespace sim {
 namespace {
 
-constexpr double kStep = kGaitStep_s, kDegree = std::numbers::pi / 180;
+constexpr double kStep = kCarrierStep_s, kDegree = std::numbers::pi / 180;
 
 std::size_t KeysUntil(double end_s) { return static_cast<std::size_t>(std::ceil(end_s / kStep)) + 3; }
 
@@ -37,13 +37,13 @@ glm::dquat Turned(const glm::dquat& start, const glm::dvec3& pitch_yaw_roll) {
 Pose Level() { return {glm::dvec3(0), glm::dquat(0, 1, 0, 0) * Exp({-0.2, 0, 0})}; }
 
 // Where surfaces begin to push [m].
-double MarginOf(const Gait& gait) { return std::max(0.15, gait.table().ahead_s * gait.speed()); }
+double MarginOf(const CarrierMotion& carrier) { return std::max(0.15, carrier.table().ahead_s * carrier.speed()); }
 
 class Roamer {
  public:
-  Roamer(const RoamingMotion& motion, const Gait& gait, const Pose& start, const Surroundings* around,
+  Roamer(const RoamingMotion& motion, const CarrierMotion& carrier, const Pose& start, const Surroundings* around,
          std::uint64_t seed)
-      : m_(motion), gait_(gait), start_(start), around_(around), seed_(seed), margin_(MarginOf(gait)) {
+      : m_(motion), carrier_motion_(carrier), start_(start), around_(around), seed_(seed), margin_(MarginOf(carrier)) {
     const glm::dvec3 way = start.q_WC * glm::dvec3(0, 0, 1);
     yaw_0_ = YawOf(way), pitch_0_ = PitchOf(way);
     target_ = {pitch_0_, yaw_0_};
@@ -57,8 +57,8 @@ class Roamer {
   };
 
   Path Draw(std::size_t count) {
-    const std::vector<Offset> offsets = gait_.Draw(seed_, count);
-    const auto early = static_cast<std::size_t>(2 / (gait_.table().course_hz * kStep));
+    const std::vector<Offset> offsets = carrier_motion_.Draw(seed_, count);
+    const auto early = static_cast<std::size_t>(2 / (carrier_motion_.table().course_hz * kStep));
     for (std::size_t k = 0; k < early; ++k) StepCourse(k);
     Path path;
     glm::dvec3 course(0.0), angles(0.0), last = start_.p_WC;
@@ -71,43 +71,44 @@ class Roamer {
       Gaze(path.keys.back().pose, turn, t_s);
       last = p;
       StepCourse(early + k);
-      course += kStep * (offsets[k].effort * Velocity() + away_.rate);
-      angles += kStep * (offsets[k].effort * offsets[k].effort * TurnRate() + gaze_.rate);
+      course += kStep * (offsets[k].activity * Velocity() + away_.rate);
+      angles += kStep * (offsets[k].activity * offsets[k].activity * TurnRate() + gaze_.rate);
     }
     return path;
   }
 
  private:
   void StepCourse(std::size_t k) {
-    const auto [a, b] = NormalVectors(seed_, Stream::gait_course, static_cast<std::uint32_t>(k), 0);
-    moves_.Draw(gait_.table().course_hz, a);
-    turns_.Draw(gait_.table().course_hz, b);
+    const auto [a, b] = NormalVectors(seed_, Stream::carrier_course, static_cast<std::uint32_t>(k), 0);
+    moves_.Draw(carrier_motion_.table().course_hz, a);
+    turns_.Draw(carrier_motion_.table().course_hz, b);
   }
 
   glm::dvec3 Velocity() const {
     const glm::dvec3 u = moves_.rate * glm::dvec3(0.686, 0.24, 0.686);  // the vertical is 0.35 of the others
-    const double e = gait_.table().evenness;
-    return gait_.course_speed() * std::sqrt((1 + e) / (e + glm::dot(u, u))) * u;
+    const double e = carrier_motion_.table().evenness;
+    return carrier_motion_.course_speed() * std::sqrt((1 + e) / (e + glm::dot(u, u))) * u;
   }
   // The pitch's is half of the yaw's.
-  glm::dvec3 TurnRate() const { return gait_.course_turn_rate() * turns_.rate * glm::dvec3(0.447, 0.894, 0); }
+  glm::dvec3 TurnRate() const { return carrier_motion_.course_turn_rate() * turns_.rate * glm::dvec3(0.447, 0.894, 0); }
 
   void Avoid(const glm::dvec3& p, double step, double t_s, Path& path) {
-    glm::dvec3 wanted(0, -Beyond(p.y - start_.p_WC.y, gait_.table().climb), 0);
+    glm::dvec3 wanted(0, -Beyond(p.y - start_.p_WC.y, carrier_motion_.table().climb), 0);
     const auto nearest = around_ ? around_->Nearest(p, m_.clearance + step + margin_) : std::nullopt;
     if (nearest) {
       const double distance = glm::distance(p, *nearest), spare = distance - m_.clearance - step;
       if (spare < path.spare) path.spare = spare, path.spare_s = t_s, path.place = p;
       const glm::dvec3 out = (p - *nearest) / std::max(distance, 1e-9);
       const double close = std::clamp(1 - spare / margin_, 0.0, 1.25);
-      wanted += 3 * std::max(gait_.speed(), 0.1) * close * close * close * out;
+      wanted += 3 * std::max(carrier_motion_.speed(), 0.1) * close * close * close * out;
       for (glm::dvec3* u : {&moves_.first, &moves_.rate}) {
         const double size = glm::length(*u);
-        *u -= std::min(1.0, 5 / gait_.table().ahead_s * kStep * close * close) * std::min(0.0, glm::dot(*u, out)) * out;
+        *u -= std::min(1.0, 5 / carrier_motion_.table().ahead_s * kStep * close * close) *
+              std::min(0.0, glm::dot(*u, out)) * out;
         *u *= std::min(1.02, size / std::max(glm::length(*u), 1e-9));  // it turns rather than stops
       }
     }
-    away_.Step(10 / gait_.table().ahead_s, wanted);
+    away_.Step(10 / carrier_motion_.table().ahead_s, wanted);
   }
 
   // turn: pitch, yaw, roll against the start.
@@ -119,12 +120,12 @@ class Roamer {
       target_.y = yaw_0_ + turn.y;
     } else if (t_s >= next_look_s_) {
       Choose(pose, yaw_0_ + turn.y);
-      next_look_s_ += std::max(2.0, 0.7 / std::max(gait_.turn_rate(), 0.05));
+      next_look_s_ += std::max(2.0, 0.7 / std::max(carrier_motion_.turn_rate(), 0.05));
     }
-    const double wide = std::clamp(1.2 * gait_.turn_rate(), 0.35, 0.9);  // [rad]
+    const double wide = std::clamp(1.2 * carrier_motion_.turn_rate(), 0.35, 0.9);  // [rad]
     const double pitch = Beyond(pitch_0_ + turn.x - target_.x, 0.5 * wide),
                  yaw = Beyond(Wrapped(yaw_0_ + turn.y - target_.y), wide);
-    const double most = 0.7 * gait_.turn_rate();
+    const double most = 0.7 * carrier_motion_.turn_rate();
     gaze_.Step(3.3, {std::clamp(-pitch, -most, most), std::clamp(-yaw, -most, most), 0});
   }
 
@@ -135,14 +136,14 @@ class Roamer {
       const double to = yaw + 22.5 * kDegree * (static_cast<int>(i % 9) - 4),
                    up = kDegree * (12.0 * static_cast<int>(i / 9) - 20);  // -20, -8, 4
       const glm::dquat look = Turned(start_.q_WC, {up - pitch_0_, to - yaw_0_, 0});
-      const double luck = Uniform(RandomWords(seed_, Stream::gait_gaze, time, i, 0)[0]);
+      const double luck = Uniform(RandomWords(seed_, Stream::carrier_gaze, time, i, 0)[0]);
       const double score = around_->Interest({pose.p_WC, look}) * (0.5 + luck);
       if (score > best) best = score, target_ = {up, to};
     }
   }
 
   const RoamingMotion& m_;
-  const Gait& gait_;
+  const CarrierMotion& carrier_motion_;
   const Pose start_;
   const Surroundings* around_;
   const std::uint64_t seed_;
@@ -156,7 +157,7 @@ class Roamer {
 // where the way ahead is short. Not fitted to anything.
 std::vector<KeyPose> Drive(const RoamingMotion& m, const Pose& start, std::uint64_t seed, double end_s,
                            const Surroundings* around) {
-  const double most = m.gait.speed.value_or(3), yaw_0 = YawOf(start.q_WC * glm::dvec3(0, 0, 1));
+  const double most = m.carrier.speed.value_or(3), yaw_0 = YawOf(start.q_WC * glm::dvec3(0, 0, 1));
   const double far = m.clearance + 2 * most + m.turning_radius;
   const auto ahead = [](double yaw) { return glm::dvec3(-std::sin(yaw), 0, -std::cos(yaw)); };
   LowPass<glm::dvec3> noise, state;
@@ -165,7 +166,7 @@ std::vector<KeyPose> Drive(const RoamingMotion& m, const Pose& start, std::uint6
   std::vector<KeyPose> keys;
   for (std::size_t k = 0; k < KeysUntil(end_s); ++k) {
     keys.push_back({kStep * static_cast<double>(k), {p, Turned(start.q_WC, {0, yaw - yaw_0, 0})}});
-    noise.Draw(0.12, NormalVectors(seed, Stream::gait_course, static_cast<std::uint32_t>(k), 1)[0]);
+    noise.Draw(0.12, NormalVectors(seed, Stream::carrier_course, static_cast<std::uint32_t>(k), 1)[0]);
     double speed = most * std::clamp(1 + 0.25 * noise.rate.x, 0.0, 2.0);
     double curvature = std::clamp(0.3 * noise.rate.y, -1.0, 1.0) / m.turning_radius;
     if (around != nullptr) {
@@ -186,7 +187,7 @@ std::vector<KeyPose> Drive(const RoamingMotion& m, const Pose& start, std::uint6
 }
 
 std::uint64_t Attempt(std::uint64_t seed, std::uint32_t attempt) {
-  return SeedOf(RandomWords(seed, Stream::gait_attempt, attempt, 0, 0));
+  return SeedOf(RandomWords(seed, Stream::carrier_attempt, attempt, 0, 0));
 }
 
 }  // namespace
@@ -194,17 +195,17 @@ std::uint64_t Attempt(std::uint64_t seed, std::uint32_t attempt) {
 std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& m, std::uint64_t scenario_seed, double end_s,
                                         const Surroundings* around) {
   constexpr std::uint32_t kAttempts = 32;
-  const std::uint64_t seed = m.gait.seed.value_or(scenario_seed);
-  const Gait gait(m.gait, 0);
+  const std::uint64_t seed = m.carrier.seed.value_or(scenario_seed);
+  const CarrierMotion carrier(m.carrier, 0);
   const Pose start = m.start             ? *m.start
-                     : around != nullptr ? FreePlaceOf({Level()}, m.clearance + 0.5 * MarginOf(gait), *around, seed)
+                     : around != nullptr ? FreePlaceOf({Level()}, m.clearance + 0.5 * MarginOf(carrier), *around, seed)
                                          : Pose{};
-  if (m.gait.model == GaitModel::vehicle)
+  if (m.carrier.model == Carrier::vehicle)
     return std::make_unique<SplineTrajectory>(Drive(m, start, seed, end_s, around));
   Roamer::Path best;
   best.spare = -1e9;
   for (std::uint32_t attempt = 0; attempt < kAttempts && best.spare < 0; ++attempt) {
-    Roamer::Path path = Roamer(m, gait, start, around, Attempt(seed, attempt)).Draw(KeysUntil(end_s));
+    Roamer::Path path = Roamer(m, carrier, start, around, Attempt(seed, attempt)).Draw(KeysUntil(end_s));
     if (path.spare > best.spare) best = std::move(path);
   }
   if (best.spare >= 0) return std::make_unique<SplineTrajectory>(best.keys);
@@ -215,7 +216,8 @@ std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& m, std::uint64_t sc
                               " m too near to a surface: state a smaller clearance or speed, or another start");
 }
 
-std::unique_ptr<Trajectory> Shaken(const Trajectory& path, GaitParams shake, std::uint64_t seed, double end_s) {
+std::unique_ptr<Trajectory> Shaken(const Trajectory& path, CarrierMotionParams shake, std::uint64_t seed,
+                                   double end_s) {
   constexpr double kFrom_hz = 0.69;
   constexpr int kSamples = 4096;
   if (!shake.speed) shake.speed = MeanSpeed(path, end_s);
@@ -225,7 +227,7 @@ std::unique_ptr<Trajectory> Shaken(const Trajectory& path, GaitParams shake, std
       *shake.turn_rate += glm::length(path.At(end_s * (i + 0.5) / kSamples).w_WC_C) / kSamples;
     }
   }
-  const std::vector<Offset> offsets = Gait(shake, kFrom_hz).Draw(shake.seed.value_or(seed), KeysUntil(end_s));
+  const std::vector<Offset> offsets = CarrierMotion(shake, kFrom_hz).Draw(shake.seed.value_or(seed), KeysUntil(end_s));
   std::vector<KeyPose> keys;
   for (std::size_t k = 0; k < offsets.size(); ++k) {
     const double t_s = kStep * static_cast<double>(k);

@@ -10,11 +10,12 @@
 
 namespace sim {
 
-// A spline (sim/motion/spline.h) through poses kGaitStep_s apart:
+// A spline (sim/motion/spline.h) through poses kCarrierStep_s apart:
 //
 //   p = p_0 + course + offset        q = R_y(yaw) q_0 R_x(pitch) R_z(roll), each the course's plus the offset
 //
-// with the offsets of sim/motion/gait.h and a course whose rates are normal numbers through a low-pass of second order.
+// with the offsets of sim/motion/carrier_motion.h and a course whose rates are normal numbers through a low-pass of
+// second order.
 // A course velocity u is scaled to speed * u sqrt((1 + e) / (e + |u|^2)), e the table's evenness, so that the whole
 // path has the stated mean speed and turn rate. Near a surface the course's inward velocity is damped and the camera is
 // pushed outwards, with a speed that grows with the cube of its depth within a margin of 1.5 s (drones: 2 s) at its
@@ -30,8 +31,8 @@ namespace sim {
 std::unique_ptr<Trajectory> MakeRoaming(const RoamingMotion& motion, std::uint64_t seed, double end_s,
                                         const Surroundings* around);
 
-// The path with a gait's offsets from 0.7 Hz upwards: p + offset, q R_y R_x R_z. Speeds that `shake` leaves open are
+// The path with a carrier's offsets from 0.7 Hz upwards: p + offset, q R_y R_x R_z. Speeds that `shake` leaves open are
 // the path's own means.
-std::unique_ptr<Trajectory> Shaken(const Trajectory& path, GaitParams shake, std::uint64_t seed, double end_s);
+std::unique_ptr<Trajectory> Shaken(const Trajectory& path, CarrierMotionParams shake, std::uint64_t seed, double end_s);
 
 }  // namespace sim

@@ -16,7 +16,7 @@ namespace sim {
 std::unique_ptr<Trajectory> MakeTrajectory(const MotionDescription& motion, std::uint64_t seed, double last_stamp_s,
                                            double margin_s, const Surroundings* around) {
   const double end_s = last_stamp_s + margin_s;
-  const auto with = [&](const std::optional<GaitParams>& shake, std::unique_ptr<Trajectory> path) {
+  const auto with = [&](const std::optional<CarrierMotionParams>& shake, std::unique_ptr<Trajectory> path) {
     return shake ? Shaken(*path, *shake, seed, end_s) : std::move(path);
   };
   if (const auto* sampled = std::get_if<SampledMotion>(&motion))

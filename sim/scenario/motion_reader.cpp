@@ -75,19 +75,19 @@ double ReadPace(Section& section, const Trajectory& path, double end_s) {
   return 1;
 }
 
-void ReadShake(Section& section, std::optional<GaitParams>& shake) {
+void ReadShake(Section& section, std::optional<CarrierMotionParams>& shake) {
   section.Allow("shake");
   if (!section.Has("shake")) return;
   Section keys = section.Child("shake");
   shake.emplace();
-  keys.RequireChoice("type", shake->model, {{"handheld", GaitModel::handheld}, {"drone", GaitModel::drone}});
+  keys.RequireChoice("type", shake->model, {{"handheld", Carrier::handheld}, {"drone", Carrier::drone}});
   ReadFields(keys, *shake);
 }
 
-template <GaitModel model>
+template <Carrier model>
 MotionDescription ReadRoaming(Section& section, const MotionNames& names) {
   RoamingMotion motion;
-  motion.gait.model = model;
+  motion.carrier.model = model;
   section.Allow("start");
   if (section.Has("start")) {
     Section start = section.Child("start");
@@ -203,9 +203,9 @@ MotionDescription ReadMotion(Section& section, const MotionNames& names) {
                                             {"half_sphere", ReadPath<PathKind::half_sphere>},
                                             {"rpy", ReadPath<PathKind::rpy>},
                                             {"dolly", ReadPath<PathKind::dolly>},
-                                            {"handheld", ReadRoaming<GaitModel::handheld>},
-                                            {"drone", ReadRoaming<GaitModel::drone>},
-                                            {"vehicle", ReadRoaming<GaitModel::vehicle>}});
+                                            {"handheld", ReadRoaming<Carrier::handheld>},
+                                            {"drone", ReadRoaming<Carrier::drone>},
+                                            {"vehicle", ReadRoaming<Carrier::vehicle>}});
   if (known) return read(section, names);
   section.IgnoreRest();
   return SampledMotion{};

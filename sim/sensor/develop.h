@@ -1,6 +1,7 @@
 // Image processing after the sensor: camera response function, demosaicing, JPEG compression.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -20,20 +21,18 @@ class ResponseCurve {
 
   // x in [0, 1]; what is beyond is clipped, NaN is 0.
   std::uint8_t Encode(float x) const {
-    if (!(x > 0.0f)) return 0;
-    if (x >= 1.0f) return 255;
-    int code = guess_[static_cast<std::size_t>(x * kCells)];
-    while (code < 255 && x >= threshold_[static_cast<std::size_t>(code)]) ++code;
-    return static_cast<std::uint8_t>(code);
+    const float light = x > 0.0f ? std::min(x, 1.0f) : 0.0f;
+    const std::uint8_t code = guess_[static_cast<std::size_t>(light * kCells)];
+    return static_cast<std::uint8_t>(code + (light >= threshold_[code] ? 1 : 0));
   }
 
   // The fraction that a code stands for.
   static double Decode(Response response, double code_0_to_1);
 
  private:
-  static constexpr int kCells = 4096;
-  std::array<float, 255> threshold_{};        // from code i to i + 1
-  std::array<std::uint8_t, kCells> guess_{};  // the code at the lower end of each cell
+  static constexpr int kCells = 4096;             // narrower than the range of any code
+  std::array<float, 256> threshold_{};            // from code i to i + 1
+  std::array<std::uint8_t, kCells + 1> guess_{};  // the code at the lower end of each cell
 };
 
 // The channel that the pixel's filter lets through: RGGB, red at (0, 0). 0: red, 1: green, 2: blue.

@@ -12,6 +12,7 @@
 
 #include "sim/random/avx2_too.h"
 #include "sim/random/random.h"
+#include "sim/sensor/noise_words.h"
 
 namespace sim {
 namespace {
@@ -29,39 +30,6 @@ float Poisson(float mean, double u) {
   }
   return static_cast<float>(count);
 }
-
-// RandomWords of samples in a row, one after the other in pixels of `per_pixel` samples, in passes of which the
-// compiler makes vector code.
-struct NoiseWords {
-  static constexpr std::size_t kCount = 256;
-  alignas(64) std::array<std::array<std::uint32_t, kCount>, 4> word;
-
-  VOBENCH_FOR_AVX2_TOO void Draw(std::uint64_t seed, std::uint32_t frame, std::uint32_t first_pixel,
-                                 std::uint32_t first_sample, std::uint32_t per_pixel) {
-    auto& [a, b, c, d] = word;
-    std::uint32_t dimension = first_sample % per_pixel, pixel = first_pixel + first_sample / per_pixel;
-    for (std::size_t i = 0; i < kCount; ++i) {
-      a[i] = dimension;
-      b[i] = pixel;
-      dimension = dimension + 1 == per_pixel ? 0 : dimension + 1;
-      pixel += dimension == 0 ? 1 : 0;
-    }
-    c.fill(frame);
-    d.fill(static_cast<std::uint32_t>(Stream::pixel_noise));
-    auto key0 = static_cast<std::uint32_t>(seed), key1 = static_cast<std::uint32_t>(seed >> 32);
-    for (int round = 0; round < 10; ++round) {  // of Philox4x32
-      for (std::size_t i = 0; i < kCount; ++i) {
-        const std::uint64_t p = std::uint64_t{a[i]} * 0xd2511f53u, q = std::uint64_t{c[i]} * 0xcd9e8d57u;
-        a[i] = static_cast<std::uint32_t>(q >> 32) ^ b[i] ^ key0;
-        b[i] = static_cast<std::uint32_t>(q);
-        c[i] = static_cast<std::uint32_t>(p >> 32) ^ d[i] ^ key1;
-        d[i] = static_cast<std::uint32_t>(p);
-      }
-      key0 += 0x9e3779b9u;
-      key1 += 0xbb67ae85u;
-    }
-  }
-};
 
 // Electrons with shot noise, and read noise, of each of `expected`.
 VOBENCH_FOR_AVX2_TOO void MakeNoise(const NoiseWords& words, std::span<const float> expected, float read_noise_e,
@@ -140,10 +108,9 @@ Sensor::Sensor(const SensorParams& params, std::uint64_t seed, int width, int he
 void Sensor::AddNoise(std::uint32_t frame, std::uint32_t first_pixel, std::span<float> electrons) const {
   NoiseWords words;
   std::array<float, NoiseWords::kCount> shot, read;
-  const auto per_pixel = static_cast<std::uint32_t>(channels());
   for (std::size_t first = 0; first < electrons.size(); first += NoiseWords::kCount) {
     const std::span<float> some = electrons.subspan(first, std::min(NoiseWords::kCount, electrons.size() - first));
-    words.Draw(seed_, frame, first_pixel, static_cast<std::uint32_t>(first), per_pixel);
+    words.Draw(seed_, frame, first_pixel, static_cast<std::uint32_t>(first), channels() == 3);
     MakeNoise(words, some, static_cast<float>(params_.read_noise_e), shot, read);
     for (std::size_t i = 0; i < some.size(); ++i) {
       if (params_.shot_noise) some[i] = some[i] < kFewElectrons ? Poisson(some[i], Uniform(words.word[2][i])) : shot[i];
@@ -238,7 +205,9 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
       if (processed) {
         std::ranges::copy(electrons, signal.begin() + static_cast<std::ptrdiff_t>(y * row_size));
       } else if (image.bits == 8) {
-        for (std::size_t i = 0; i < row_size; ++i) image.data[y * row_size + i] = response_.Encode(electrons[i]);
+        const ResponseCurve& response = response_;  // read again after every byte written otherwise
+        std::transform(electrons.begin(), electrons.end(), &image.data[y * row_size],
+                       [&response](float x) { return response.Encode(x); });
       } else {
         for (std::size_t i = 0; i < row_size; ++i) {
           const double x = std::clamp(double{electrons[i]}, 0.0, 1.0);

@@ -46,7 +46,7 @@ const FilterAnswer& FixedLag::Update(std::span<const Match> z) {
     } else {
       for (std::size_t i = 0; i < particles_.size(); ++i) Solve(i, Options(true));
       for (std::size_t i = 0; i < particles_.size(); ++i)
-        Challenge(i, static_cast<std::uint32_t>(i) + frame_, Options(true));
+        SolveAlternative(i, static_cast<std::uint32_t>(i) + frame_, Options(true));
     }
     AddEvidence(1);
     for (const Particle& particle : particles_) answer_.events += particle.solution.path.events;

@@ -1,5 +1,5 @@
 // Fixed lag: a pose is sampled once the images of the `lag` frames after it are in. Until the first one is sampled,
-// every solution is challenged by another mode.
+// every solution is compared with one from another first guess (multi-start).
 // Source:  docs/algorithm.md, section 9.
 #pragma once
 

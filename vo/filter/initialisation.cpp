@@ -40,7 +40,7 @@ const FilterAnswer& Initialisation::Update(std::span<const Match> z) {
       IterateShutterCorrection();
     else
       Solve(0, StartOptions());
-    ChallengeInTurn();
+    SolveAlternatives();
     ShareSolution();
     AddEvidence(1);
     answer_.events += particles_[0].solution.path.events;
@@ -103,11 +103,11 @@ void Initialisation::SolveOther(std::size_t i, const WindowOptions& options, Pat
   Solve(corrected.window, in, options, other);
 }
 
-// Challenge by one other mode in each frame; by all where the present one does not fit: its objective is above the
+// One other first guess in each frame; all where the present one does not fit: its objective is above the
 // number of measurements.
-void Initialisation::ChallengeInTurn() {
+void Initialisation::SolveAlternatives() {
   for (std::uint32_t k = 0; k < kGuesses; ++k) {
-    Challenge(0, frame_ + k, StartOptions());
+    SolveAlternative(0, frame_ + k, StartOptions());
     if (rolling()) Take(Corrected(particles_[0].solution, ShutterReference::frame_pose));
     if (particles_[0].solution.path.objective < Measurements()) break;
   }

@@ -1,6 +1,6 @@
 // Initialisation: the first frames are one window, solved again with every image, before any pose is sampled.
-// All particles share one solution, as seen from their start poses, until the window is full; each solution is
-// challenged by another mode.
+// All particles share one solution, as seen from their start poses, until the window is full; each is
+// compared with solutions from other first guesses (multi-start).
 // Source:  docs/algorithm.md, section 9.
 #pragma once
 
@@ -29,7 +29,7 @@ class Initialisation final : public WindowPhase {
   CorrectedWindow Corrected(const PathSolution& solution, ShutterReference reference) const;
   void Take(CorrectedWindow&& corrected);
   void IterateShutterCorrection();
-  void ChallengeInTurn();
+  void SolveAlternatives();
   void ShareSolution();
   std::vector<StartPose> StartPath() const;
   void Finish();

@@ -70,7 +70,7 @@ void WindowPhase::Solve(std::size_t particle, const WindowOptions& options) {
   window_.PlaceAnchors(particles_[particle].solution.path, particles_[particle].anchors);
 }
 
-void WindowPhase::Challenge(std::size_t i, std::uint32_t guess, WindowOptions options) {
+void WindowPhase::SolveAlternative(std::size_t i, std::uint32_t guess, WindowOptions options) {
   const PathSolution& present = particles_[i].solution;
   std::optional<PathSolution> first = FirstGuess(window_, table_, InputOf(i), present, guess % kGuesses);
   if (!first) return;

@@ -52,7 +52,7 @@ class WindowPhase : public ParticlePhase {
   // All particles, from first guesses near their modes: the heaviest, and the others by its linearisation.
   void SolveAll();
   // Replaces the solution by another mode where that is better: from first guess number `guess`, taken in turn.
-  void Challenge(std::size_t particle, std::uint32_t guess, WindowOptions options);
+  void SolveAlternative(std::size_t particle, std::uint32_t guess, WindowOptions options);
   virtual void SolveOther(std::size_t particle, const WindowOptions& options, PathSolution& other) {
     Solve(window_, InputOf(particle), options, other);
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "sim/sensor/noise_words.h"
+
 namespace sim {
 namespace {
 
@@ -17,6 +19,37 @@ TEST(Random, KnownAnswersOfPhilox) {
             (Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
   EXPECT_EQ(RandomWords(0x299f31d0a4093822ull, static_cast<Stream>(0x03707344), 0x13198a2e, 0x85a308d3, 0x243f6a88),
             (Words{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+TEST(Random, WordsOfManySamplesAreThoseOfEach) {
+  constexpr std::uint64_t kSeed = 0x299f31d0a4093822ull;
+  for (const bool color : {false, true}) {
+    const std::uint32_t per_pixel = color ? 3 : 1;
+    for (const std::uint32_t first : {0u, 256u, 1024u}) {
+      NoiseWords words;
+      words.Draw(kSeed, 7, 640, first, color);
+      for (std::uint32_t i = 0; i < NoiseWords::kCount; ++i) {
+        const Words one =
+            RandomWords(kSeed, Stream::pixel_noise, 7, 640 + (first + i) / per_pixel, (first + i) % per_pixel);
+        for (std::size_t k = 0; k < 4; ++k) ASSERT_EQ(words.word[k][i], one[k]) << first + i << " " << color;
+      }
+    }
+  }
+}
+
+TEST(Random, KernelsOfPhiloxGiveTheSameWords) {
+  for (PhiloxKernel* kernel : PhiloxKernels()) {
+    NoiseWords words;
+    for (std::uint32_t i = 0; i < NoiseWords::kCount; ++i)
+      for (std::uint32_t k = 0; k < 4; ++k) words.word[k][i] = (4 * i + k) * 0x9e3779b9u;
+    const NoiseWords counters = words;
+    kernel(~std::uint64_t{1}, words);
+    for (std::size_t i = 0; i < NoiseWords::kCount; ++i) {
+      const auto& [a, b, c, d] = counters.word;
+      const Words one = RandomWords(~std::uint64_t{1}, static_cast<Stream>(d[i]), c[i], b[i], a[i]);
+      for (std::size_t k = 0; k < 4; ++k) ASSERT_EQ(words.word[k][i], one[k]) << i;
+    }
+  }
 }
 
 TEST(Random, UniformNeverReachesItsEnds) {

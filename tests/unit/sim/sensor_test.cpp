@@ -59,6 +59,10 @@ TEST(ResponseCurve, RoundsTheCurveEverywhere) {
     }
     for (int code = 0; code < 256; ++code) {
       EXPECT_EQ(curve.Encode(static_cast<float>(ResponseCurve::Decode(response, code / 255.0))), code);
+      if (code == 255) continue;
+      const auto border = static_cast<float>(ResponseCurve::Decode(response, (code + 0.5) / 255));
+      EXPECT_EQ(curve.Encode(border), code + 1);
+      EXPECT_EQ(curve.Encode(std::nextafter(border, 0.0f)), code);
     }
   }
 }

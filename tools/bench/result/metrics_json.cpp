@@ -66,10 +66,18 @@ Json Of(const ev::Rpe& rpe, const ev::JudgeOptions& options, const char* scale) 
           {"pairs", rpe.pairs.size()}};
 }
 
+// Without the errors where the poses do not determine the alignment.
+ev::Ate Determined(const ev::TrajectoryErrors& errors, ev::Alignment alignment) {
+  ev::Ate ate = errors.Aligned(alignment);
+  const bool fitted = alignment != ev::Alignment::none && alignment != ev::Alignment::first;
+  if (fitted && !errors.determines_alignment()) ate.position = {ate.position.count, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN};
+  return ate;
+}
+
 Json Of(const ev::TrajectoryErrors& errors, const ev::JudgeOptions& options) {
   Json json;
   for (const ev::Alignment alignment : ev::kAlignments) {
-    json["ate"][ev::Name(alignment)] = Of(errors.Aligned(alignment), options);
+    json["ate"][ev::Name(alignment)] = Of(Determined(errors, alignment), options);
   }
   json["rpe"]["sim3_scale"] = Of(errors.rpe, options, "the scale of the sim3 alignment");
   json["rpe"]["unscaled"] = Of(errors.rpe_unscaled, options, "1");
@@ -97,6 +105,7 @@ Json Of(const ev::NeesSummary& nees, const std::string& what, ev::Gauge gauge) {
 
 Json Of(const ev::Metrics& metrics) {
   const ev::JudgeOptions& options = metrics.options;
+  const double ate_m = Determined(metrics.errors, ev::Alignment::sim3).position.rmse;
   Json json = {{"options",
                 {{"association", RuleName(options.association.rule)},
                  {"gap_s", Seconds(options.association.gap_ns)},
@@ -106,10 +115,10 @@ Json Of(const ev::Metrics& metrics) {
                {"path_length", Number(metrics.path_length_m, "m", "along the truth at the frames of the sequence")},
                {"duration", Number(metrics.duration_s, "s", "between the first and the last frame that has truth")},
                {"errors", Of(metrics.errors, options)},
-               {"ate_share_of_path", Number(metrics.errors.sim3.position.rmse / metrics.path_length_m, "1",
-                                            "position RMSE after sim3 alignment / path length")},
+               {"ate_share_of_path",
+                Number(ate_m / metrics.path_length_m, "1", "position RMSE after sim3 alignment / path length")},
                {"ate_share_of_spread",
-                Number(metrics.errors.sim3.position.rmse / metrics.spread_m, "1",
+                Number(ate_m / metrics.spread_m, "1",
                        "position RMSE after sim3 alignment / RMS distance of the true positions from their mean")}};
   if (metrics.live) json["live_errors"] = Of(*metrics.live, options);
   if (metrics.coverage) {
@@ -219,7 +228,8 @@ std::vector<RecordedMetrics> ReadMetricsJson(const std::filesystem::path& out) {
       metrics.options.rpe_delta_ns = nanoseconds(options.at("rpe_delta_s"));
       metrics.options.rpe_tolerance_ns = nanoseconds(options.at("rpe_tolerance_s"));
       metrics.options.gauge = options.at("nees_gauge") == "first_pose" ? ev::Gauge::first_pose : ev::Gauge::as_is;
-      metrics.ate_sim3_rmse_m = run.at("errors").at("ate").at("sim3").at("position").at("rmse").get<double>();
+      const Json& ate = run.at("errors").at("ate").at("sim3").at("position").at("rmse");
+      metrics.ate_sim3_rmse_m = ate.is_null() ? kNaN : ate.get<double>();
     }
     return recorded;
   });

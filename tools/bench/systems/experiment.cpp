@@ -141,7 +141,7 @@ std::vector<settings::FieldRow> SettingsTable() {
   table.Child("trajectory", recorded);
   sim::RoamingMotion roaming, vehicle;
   table.Child("trajectory", roaming);
-  vehicle.gait.model = sim::GaitModel::vehicle;
+  vehicle.carrier.model = sim::Carrier::vehicle;
   table.Child("trajectory", vehicle);
   for (const sim::PathKind kind :
        {sim::PathKind::orbit, sim::PathKind::half_sphere, sim::PathKind::rpy, sim::PathKind::dolly}) {

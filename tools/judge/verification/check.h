@@ -9,7 +9,7 @@
 namespace verification {
 
 // The largest value / bound of those added; NaN is larger than all.
-struct Worst {
+struct LargestRatio {
   double value = 0, bound = 1, ratio = -1;
   std::size_t count = 0;  // of all
   // Adds a value; whether it is the largest so far.
@@ -32,7 +32,7 @@ class Check {
     if (!(value <= bound)) failures_.push_back(where);
   }
   // The worst of what was added to it, if anything was.
-  void Add(const Worst& worst, const std::string& where) {
+  void Add(const LargestRatio& worst, const std::string& where) {
     if (worst.count > 0) Add(worst.value, worst.bound, where);
   }
   // A failure without a size, such as a missing file.
@@ -59,7 +59,7 @@ class Check {
 
  private:
   std::string name_, unit_, where_;
-  Worst worst_{0, 0, -1, 0};
+  LargestRatio worst_{0, 0, -1, 0};
   std::vector<std::string> failures_;
 };
 

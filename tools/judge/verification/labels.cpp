@@ -94,7 +94,7 @@ void CompareLabels(Frames& frames, std::size_t frame, std::vector<Check>& checks
     for (std::size_t k = 0; k < 5; ++k) checks[kTight].Add(std::abs(b[2 + k] - counted[k]), 0.5, where);
     const Vector3d middle(b[7], b[8], b[9]), half = 0.5 * Vector3d(b[14], b[15], b[16]);
     const Eigen::Quaterniond q(b[13], b[10], b[11], b[12]);
-    Worst inside;
+    LargestRatio inside;
     for (std::size_t i = 0; i < ids.total() && !depth.empty(); ++i) {
       const double Z = static_cast<double>(depth.at<float>(static_cast<int>(i)));
       if (Z == 0 || mask.data[i] == 0) continue;

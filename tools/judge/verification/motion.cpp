@@ -33,16 +33,16 @@ std::vector<Rate> Rates(const std::vector<Entry>& entries, std::size_t first, st
 }
 
 // The largest second derivative of the rates near k .. k + 1, by divided differences.
-double Bend(const std::vector<Rate>& rates, std::size_t k) {
+double SecondDerivative(const std::vector<Rate>& rates, std::size_t k) {
   const auto n = static_cast<std::ptrdiff_t>(rates.size()), at = static_cast<std::ptrdiff_t>(k);
-  double bend = 0;
+  double largest = 0;
   for (std::ptrdiff_t i = std::max<std::ptrdiff_t>(at - kNear, 1); i <= std::min(at + 1 + kNear, n - 2); ++i) {
     const Rate &a = rates[static_cast<std::size_t>(i - 1)], &b = rates[static_cast<std::size_t>(i)],
                &c = rates[static_cast<std::size_t>(i + 1)];
     const Vector3d slope_ab = (b.value - a.value) / (b.t_s - a.t_s), slope_bc = (c.value - b.value) / (c.t_s - b.t_s);
-    bend = std::max(bend, 2 * (slope_bc - slope_ab).norm() / (c.t_s - a.t_s));
+    largest = std::max(largest, 2 * (slope_bc - slope_ab).norm() / (c.t_s - a.t_s));
   }
-  return bend;
+  return largest;
 }
 
 // Error of the trapezoidal rule from one line to the next: dt^3 / 12 of the rate's second derivative. White
@@ -80,12 +80,13 @@ void CheckVelocities(const Sequence& s, Check& position, Check& orientation) {
     const vo::Pose &a = s.poses[steps[k].frame], &b = s.poses[steps[k].frame + 1];
     const double rule = kSafety * dt * dt * dt / 12, root = std::sqrt(3 * dt * dt * dt / 12);
     const Vector3d moved = b.p_WC - a.p_WC - dt / 2 * (v[k].value + v[k + 1].value);
-    position.Add(moved.norm(), rule * Bend(v, k) + kSigmas * root * s.roughness.position + kText, steps[k].where);
+    position.Add(moved.norm(), rule * SecondDerivative(v, k) + kSigmas * root * s.roughness.position + kText,
+                 steps[k].where);
     // Second term of the Magnus series: body rates of changing direction; the next is below |w|^2 dt^2 of the rule.
     const Vector3d turned = vo::Log(a.q_WC.conjugate() * b.q_WC) - dt / 2 * (w[k].value + w[k + 1].value) -
                             dt * dt / 12 * w[k].value.cross(w[k + 1].value);
     const double noise = s.roughness.orientation * (1 + dt * w[k].value.norm());
-    orientation.Add(turned.norm(), rule * Bend(w, k) + kSigmas * root * noise + kText, steps[k].where);
+    orientation.Add(turned.norm(), rule * SecondDerivative(w, k) + kSigmas * root * noise + kText, steps[k].where);
   }
 }
 
@@ -107,7 +108,7 @@ void CheckAccelerations(const Sequence& s, Check& linear, Check& angular) {
           Numbers(v[k + 1], first) - Numbers(v[k], first) - dt / 2 * (rates[k].value + rates[k + 1].value);
       const double rough =
           s.roughness.sampled ? density * std::sqrt(3 * dt * (1 + 2 * dt / s.roughness.knot_step_s)) : 0;
-      const double bound = kSafety * dt * dt * dt / 12 * Bend(rates, k) + kSigmas * rough + kText;
+      const double bound = kSafety * dt * dt * dt / 12 * SecondDerivative(rates, k) + kSigmas * rough + kText;
       (first == 0 ? linear : angular).Add(gained.norm(), bound, steps[k].where);
     }
   }

@@ -52,7 +52,7 @@ void CompareDisparity(Part& a, Part& b, const std::vector<RigCamera>& rig, std::
   if (disparity.empty() || depth.empty()) return;
   const Relative move = Between(rig[0].T_BC, rig[1].T_BC);
   const double fb = -a.sequence.camera.fx * move.t.x();
-  Worst worst;
+  LargestRatio worst;
   for (std::size_t i = 0; i < depth.total(); ++i) {
     const double Z = static_cast<double>(reinterpret_cast<const float*>(depth.data)[i]),
                  d = static_cast<double>(reinterpret_cast<const float*>(disparity.data)[i]);

@@ -118,7 +118,7 @@ std::optional<DepthMatch> MatchAt(const Frames& frames, const cv::Mat& there, co
 void DepthPictures(Frames& frames, std::size_t frame, Check& check) {
   const cv::Mat coded = frames.Picture("depth", frame), exact = frames.Picture("depth_exr", frame);
   if (coded.empty() || exact.empty()) return;
-  Worst worst;
+  LargestRatio worst;
   for (std::size_t i = 0; i < exact.total(); ++i) {
     const double Z = At(exact, i), step = static_cast<double>(coded.at<std::uint16_t>(static_cast<int>(i))) / 5000;
     const bool fits = Z * 5000 < 65535.5;
@@ -130,7 +130,7 @@ void DepthPictures(Frames& frames, std::size_t frame, Check& check) {
 void Distance(Frames& frames, std::size_t frame, Check& check) {
   const cv::Mat distance = frames.Picture("distance", frame), depth = frames.Depth(frame);
   if (distance.empty() || depth.empty()) return;
-  Worst worst;
+  LargestRatio worst;
   for (std::size_t i = 0; i < depth.total(); ++i) {
     const double Z = At(depth, i), length = frames.rays()[i].norm(), D = At(distance, i);
     if (Z == 0 && D * 5000 > 65535 * length) continue;  // beyond what 16 bits hold
@@ -145,7 +145,7 @@ void Normals(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
   if (normals.empty() || depth.empty()) return;
   const auto width = static_cast<std::size_t>(depth.cols);
   const std::vector<Vector3d>& rays = frames.rays();
-  Worst facing;
+  LargestRatio facing;
   Share share;
   for (std::size_t i = 0; i < depth.total(); ++i) {
     const float* file = reinterpret_cast<const float*>(normals.data) + 3 * i;
@@ -227,7 +227,7 @@ void Flow(Frames& frames, std::size_t frame, const std::string& stream, std::siz
   if (flow.empty() || depth.empty() || !motions.known()) return;
   const vo::Camera& camera = frames.sequence().camera;
   const auto width = static_cast<std::size_t>(depth.cols);
-  Worst worst[2];
+  LargestRatio worst[2];
   std::size_t masked_wrong = 0, masked = 0;
   for (std::size_t i = 0; i < depth.total(); ++i) {
     const double Z = At(depth, i), error = frames.DepthError(Z);
@@ -237,12 +237,12 @@ void Flow(Frames& frames, std::size_t frame, const std::string& stream, std::siz
     const Vector2d at(static_cast<double>(x), static_cast<double>(y));
     const bool known = uv[0] < kUnknown && uv[1] < kUnknown;
     const auto best_of = [&](std::span<const Relative> moves) {
-      Worst best;
+      LargestRatio best;
       best.ratio = kNone, best.value = kNone;
       for (const Relative& move : moves) {
         const Vector3d ray = move.R * frames.rays()[i], X = Z * ray + move.t;
-        Worst here;
-        if (std::abs(X.z()) <= 2 * error) return Worst{};  // on the other camera's edge
+        LargestRatio here;
+        if (std::abs(X.z()) <= 2 * error) return LargestRatio{};  // on the other camera's edge
         if (!known || X.z() < 0) {
           here.Add(known == (X.z() > 0) ? 0 : kNone, 1);
         } else {
@@ -255,7 +255,7 @@ void Flow(Frames& frames, std::size_t frame, const std::string& stream, std::siz
       }
       return best;
     };
-    const Worst best = best_of(motions.Of(i));
+    const LargestRatio best = best_of(motions.Of(i));
     if (best.ratio < 0) continue;
     ++masked;
     if (best.ratio > 1 && best_of(motions.Others(i)).ratio <= 1) {
@@ -326,7 +326,7 @@ void Landmarks(Frames& frames, std::size_t frame, std::vector<Check>& checks) {
              last = std::ranges::upper_bound(s.tracks, s.stamps[frame], {}, &Entry::stamp_ns);
   if (first == last || !s.has_pose[frame]) return;
   const cv::Mat depth = frames.Depth(frame);
-  Worst worst;
+  LargestRatio worst;
   std::size_t odd = 0;
   for (auto track = first; track != last; ++track) {
     const std::vector<double>& t = track->numbers;

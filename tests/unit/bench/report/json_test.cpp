@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "tests/unit/bench/report/fake_result.h"
@@ -109,6 +110,24 @@ TEST(MetricsJson, GivesEveryNumberItsUnitAndOrigin) {
   };
   visit(json);
   EXPECT_GT(numbers, 6 * 30);
+}
+
+TEST(MetricsJson, TwoPosesHaveNoErrorAfterAnAlignment) {
+  const TemporaryFolder folder;
+  FakeOptions options;
+  options.pictures = false;
+  options.seeds = 1;
+  auto judged = WriteFakeResult(folder.path(), options);
+  judged[0].metrics.errors.pairs = 2;
+  WriteMetricsJson(folder.path(), judged);
+  const auto runs = nlohmann::json::parse(TemporaryFolder::Read(folder.path() / "metrics.json")).at("runs");
+  for (const char* fitted : {"se3", "sim3", "yaw"}) {
+    EXPECT_TRUE(runs[0].at("errors").at("ate").at(fitted).at("position").at("rmse").is_null()) << fitted;
+    EXPECT_TRUE(runs[1].at("errors").at("ate").at(fitted).at("position").at("rmse").is_number()) << fitted;
+  }
+  EXPECT_TRUE(runs[0].at("errors").at("ate").at("none").at("position").at("rmse").is_number());
+  EXPECT_TRUE(runs[0].at("ate_share_of_path").at("value").is_null());
+  EXPECT_TRUE(std::isnan(ReadMetricsJson(folder.path())[0].ate_sim3_rmse_m));
 }
 
 TEST(MetricsJson, GivesTheOptionsBack) {

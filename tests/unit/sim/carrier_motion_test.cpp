@@ -1,4 +1,4 @@
-#include "sim/motion/gait.h"
+#include "sim/motion/carrier_motion.h"
 
 #include <gtest/gtest.h>
 
@@ -13,21 +13,21 @@
 namespace sim {
 namespace {
 
-RoamingMotion Free(GaitModel model) {
+RoamingMotion Free(Carrier model) {
   RoamingMotion motion;
-  motion.gait.model = model;
+  motion.carrier.model = model;
   motion.start.emplace();
   return motion;
 }
 
 // Error of the fourth-order stencil with h = 1 ms. Position: a cubic on each segment of the spline, so rounding alone,
 // some 1e-16 m / 1 ms. Orientation: h^4/30 times a fifth derivative below 1e6 rad/s^5, 3e-8.
-TEST(Gait, VelocitiesAndAccelerationsAreTheDerivatives) {
+TEST(CarrierMotion, VelocitiesAndAccelerationsAreTheDerivatives) {
   constexpr double kStep = 1e-3;
-  for (const GaitModel model : {GaitModel::handheld, GaitModel::drone}) {
+  for (const Carrier model : {Carrier::handheld, Carrier::drone}) {
     const auto path = MakeRoaming(Free(model), 3, 5, nullptr);
     for (int k = 1; k < 480; k += 7) {
-      const RateErrors errors = RateErrorsAt(*path, kGaitStep_s * (k + 0.5), kStep);
+      const RateErrors errors = RateErrorsAt(*path, kCarrierStep_s * (k + 0.5), kStep);
       EXPECT_LT(errors.v, 1e-11) << k;
       EXPECT_LT(errors.a, 1e-9) << k;
       EXPECT_LT(errors.w, 1e-7) << k;
@@ -36,7 +36,7 @@ TEST(Gait, VelocitiesAndAccelerationsAreTheDerivatives) {
   }
 }
 
-TEST(Gait, TheSameSeedGivesTheSameBytes) {
+TEST(CarrierMotion, TheSameSeedGivesTheSameBytes) {
   const auto bytes = [](const RoamingMotion& motion, std::uint64_t seed) {
     std::vector<Motion> motions;
     const auto path = MakeRoaming(motion, seed, 3, nullptr);
@@ -46,16 +46,16 @@ TEST(Gait, TheSameSeedGivesTheSameBytes) {
   const auto same = [](const std::vector<Motion>& a, const std::vector<Motion>& b) {
     return std::memcmp(a.data(), b.data(), a.size() * sizeof(Motion)) == 0;
   };
-  RoamingMotion motion = Free(GaitModel::handheld);
+  RoamingMotion motion = Free(Carrier::handheld);
   const auto first = bytes(motion, 5);
   EXPECT_TRUE(same(first, bytes(motion, 5)));
   EXPECT_FALSE(same(first, bytes(motion, 6)));
-  motion.gait.seed = 5;
+  motion.carrier.seed = 5;
   EXPECT_TRUE(same(first, bytes(motion, 6))) << "the path's own seed comes before the scenario's";
 }
 
-GaitParams With(double vehemence, double tremor) {
-  GaitParams params;
+CarrierMotionParams With(double vehemence, double tremor) {
+  CarrierMotionParams params;
   params.vehemence = vehemence;
   params.tremor = tremor;
   return params;
@@ -64,32 +64,33 @@ GaitParams With(double vehemence, double tremor) {
 // Mean of |a|^2 over independent seeds minus that of the table, in standard errors. False-alarm rate of 4.5: 1 in
 // 150 000.
 double DeviationOfTremor(double tremor, double stated) {
-  GaitParams params = With(0, tremor);
+  CarrierMotionParams params = With(0, tremor);
   params.speed = params.turn_rate = 100;
-  const Gait gait(params, 0.69);
+  const CarrierMotion carrier(params, 0.69);
   double expected = 0, sum = 0, squares = 0;
-  for (std::size_t j = 4; j < kGaitComponents; ++j) expected += std::pow(stated * gait.table().linear_tremor[j], 2);
+  for (std::size_t j = 4; j < kCarrierComponents; ++j)
+    expected += std::pow(stated * carrier.table().linear_tremor[j], 2);
   constexpr int kSeeds = 200;
   for (int seed = 0; seed < kSeeds; ++seed) {
-    const auto x = gait.Draw(static_cast<std::uint64_t>(seed), 3);
-    const glm::dvec3 a = (x[0].move - 2.0 * x[1].move + x[2].move) / (kGaitStep_s * kGaitStep_s);
+    const auto x = carrier.Draw(static_cast<std::uint64_t>(seed), 3);
+    const glm::dvec3 a = (x[0].move - 2.0 * x[1].move + x[2].move) / (kCarrierStep_s * kCarrierStep_s);
     sum += glm::dot(a, a) / kSeeds;
     squares += std::pow(glm::dot(a, a), 2) / kSeeds;
   }
   return (sum - expected) / std::sqrt((squares - sum * sum) / kSeeds);
 }
 
-TEST(Gait, AccelerationsAreTheTables) {
+TEST(CarrierMotion, AccelerationsAreTheTables) {
   EXPECT_LT(std::abs(DeviationOfTremor(1, 1)), 4.5);
   EXPECT_GT(std::abs(DeviationOfTremor(1.5, 1)), 4.5);
 }
 
-TEST(Gait, AShakeIsAddedToThePath) {
+TEST(CarrierMotion, AShakeIsAddedToThePath) {
   PathMotion dolly;
   dolly.move = {2, 0, 0};
   dolly.along = {Swing::Kind::there_and_back, 1, 8};
   const PathTrajectory path(dolly);
-  const auto rms = [&](const GaitParams& shake) {
+  const auto rms = [&](const CarrierMotionParams& shake) {
     const auto shaken = Shaken(path, shake, 1, 8);
     double sum = 0;
     for (int k = 0; k < 160; ++k) {
@@ -107,7 +108,7 @@ TEST(Gait, AShakeIsAddedToThePath) {
 // Velocity along the vehicle's own axis, level: exact at the keys, and to the spline's curvature between them.
 TEST(Vehicle, DoesNotSlip) {
   RoamingMotion motion;
-  motion.gait.model = GaitModel::vehicle;
+  motion.carrier.model = Carrier::vehicle;
   motion.start = {{1, 1.5, 2}, {0, 1, 0, 0}};  // level, towards -z
   const auto path = MakeRoaming(motion, 4, 20, nullptr);
   double fastest = 0;
