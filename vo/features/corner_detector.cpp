@@ -46,7 +46,7 @@ std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vecto
           cv::Rect(0, 0, grey.cols, grey.rows);
       std::vector<Eigen::Vector2d> best;
       for (int threshold = params.fast_threshold_start;;
-           threshold = std::max(threshold * 2 / 3, params.fast_threshold_min)) {
+           threshold = std::max(threshold * 4 / 9, params.fast_threshold_min)) {
         cv::FAST(grey(cell), corners, threshold, true);
         SortByResponse(corners);
         best.clear();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "vo/filter/information_update.h"
 #include "vo/geometry/covariance.h"
 #include "vo/geometry/so3.h"
 
@@ -126,14 +127,14 @@ void PathEquations::AddTrackOf(std::size_t index, const WindowInput& in, const T
       E.template middleRows<kSize>(j).noalias() += AtW * M;
     }
     if (track.provisional) continue;
-    // Lazy products: those of 9 rows and columns would be blocked for the cache.
-    A_.block<kSize, kSize>(i, i) += JtW.lazyProduct(J);
+    ViewProducts<kSize> products{JtW.data(), J.data(), nullptr, nullptr, &A_(i, i), nullptr, nullptr, A_.rows()};
     b_.segment<kSize>(i).noalias() += JtW * e;
     if (j >= 0) {
-      A_.block<kSize, kSize>(j, j) += AtW.lazyProduct(J_anchor);
-      A_.block<kSize, kSize>(i, j) += JtW.lazyProduct(J_anchor);  // the anchor comes first: the lower triangle
+      products.Z = AtW.data(), products.K = J_anchor.data();
+      products.A_jj = &A_(j, j), products.A_ij = &A_(i, j);  // the anchor comes first: the lower triangle
       b_.segment<kSize>(j).noalias() += AtW * e;
     }
+    AddProducts(products);
     cost_ += e.dot(We);
     if (marginal) seen_.push_back({view.slot, h.J_shift, WM, view.R_inverse});
     log_det_ += view.log_det_R + 2 * std::log(2 * std::numbers::pi);
@@ -193,7 +194,7 @@ void PathEquations::ReduceInformation() {
     const Eigen::Index rows = std::ranges::max(tracks, {}, &PathLinearisation::Eliminated::end).end - row;
     if (rows == 0) continue;  // Eigen divides by it
     const auto Y = linear_.Y.block(row, 3 * static_cast<Eigen::Index>(i), rows, 3 * std::ssize(tracks));
-    A_.block(row, row, rows, rows).selfadjointView<Eigen::Lower>().rankUpdate(Y, -1.0);
+    SubtractSquare(Y, A_.block(row, row, rows, rows));
   }
   if (z_columns_ == 0) return;
   const auto C = linear_.Y.middleCols(y_.size(), 3 * z_columns_);

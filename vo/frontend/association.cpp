@@ -130,7 +130,12 @@ Consensus RobustPose(const AssociationContext& in, std::span<const Candidate> ca
   std::optional<Pose> at;
   for (int round = 0; in.shutter.on() && round < kShutterRounds; ++round) {
     at = FindConsensus(in.prediction(), in.reference.map, matches, gate, in.params.filter, at).pose.mean;
-    matches = MatchesOf(in, candidates, results, VelocityAt(in, *at));
+    const Vector6 velocity = VelocityAt(in, *at);
+    for (Match& match : matches) {
+      const auto [z, centre_offset_W] = match.row.RotationCompensated(velocity);
+      match.z = z;
+      match.centre_offset_W = centre_offset_W;
+    }
   }
   Consensus consensus = FindConsensus(in.prediction(), in.reference.map, matches, gate, in.params.filter, at);
   if (!in.params.filter.reject_outliers) consensus.inlier.assign(matches.size(), true);

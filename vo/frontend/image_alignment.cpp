@@ -96,9 +96,11 @@ struct Residuals {
   }
 };
 
-// The best of a grid of rotations, on the coarsest level.
-Eigen::Quaterniond BestOfGrid(const Camera& camera, const cv::Mat& then, const cv::Mat& now) {
-  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then);
+// The best of a grid of rotations, by some of the coarsest level's pixels.
+Eigen::Quaterniond BestOfGrid(const Camera& camera, std::span<const TemplatePixel> level, const cv::Mat& now) {
+  constexpr std::size_t kEvery = 3;
+  std::vector<TemplatePixel> pixels;
+  for (std::size_t i = 0; i < level.size(); i += kEvery) pixels.push_back(level[i]);
   std::vector<Eigen::Quaterniond> rotations{Eigen::Quaterniond::Identity()};
   for (int x = -kGridX; x <= kGridX; ++x)
     for (int y = -kGridY; y <= kGridY; ++y) rotations.push_back(Exp(kGridStep * Eigen::Vector3d(x, y, 0)));
@@ -114,9 +116,9 @@ Eigen::Quaterniond BestOfGrid(const Camera& camera, const cv::Mat& then, const c
 }
 
 // One level, from `R`; false where the images do not determine the rotation.
-bool AlignLevel(const Camera& camera, const cv::Mat& then, const cv::Mat& now, Eigen::Quaterniond& R) {
+bool AlignLevel(const Camera& camera, std::span<const TemplatePixel> pixels, const cv::Mat& now,
+                Eigen::Quaterniond& R) {
   const double scale = ScaleOf(camera, now);
-  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then);
   Residuals residuals;
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     if (!residuals.Set(camera, pixels, now, R)) return false;
@@ -138,8 +140,8 @@ bool AlignLevel(const Camera& camera, const cv::Mat& then, const cv::Mat& now, E
 }
 
 // Whether the rotated earlier image explains a sufficient part of the later one's variation.
-bool Explains(const Camera& camera, const cv::Mat& then, const cv::Mat& now, const Eigen::Quaterniond& R) {
-  const std::vector<TemplatePixel> pixels = TemplateOf(camera, then);
+bool Explains(const Camera& camera, std::span<const TemplatePixel> pixels, const cv::Mat& now,
+              const Eigen::Quaterniond& R) {
   Residuals residuals;
   if (!residuals.Set(camera, pixels, now, R)) return false;
   double mean = 0, deviation = 0;
@@ -168,10 +170,13 @@ std::vector<cv::Mat> Thumbnails(const cv::Mat& grey) {
 
 std::optional<Eigen::Quaterniond> AlignRotation(const Camera& camera, const std::vector<cv::Mat>& then,
                                                 const std::vector<cv::Mat>& now) {
-  Eigen::Quaterniond R = BestOfGrid(camera, then[0], now[0]);
-  for (std::size_t level = 0; level < then.size(); ++level)
-    if (!AlignLevel(camera, then[level], now[level], R)) return std::nullopt;
-  return Explains(camera, then.back(), now.back(), R) ? std::optional(R) : std::nullopt;
+  std::vector<TemplatePixel> pixels = TemplateOf(camera, then[0]);
+  Eigen::Quaterniond R = BestOfGrid(camera, pixels, now[0]);
+  for (std::size_t level = 0; level < then.size(); ++level) {
+    if (level > 0) pixels = TemplateOf(camera, then[level]);
+    if (!AlignLevel(camera, pixels, now[level], R)) return std::nullopt;
+  }
+  return Explains(camera, pixels, now.back(), R) ? std::optional(R) : std::nullopt;
 }
 
 }  // namespace vo

@@ -17,11 +17,14 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 using Nees = double ev::FrameConsistency::*;
 
+// NEES per degree of freedom, as drawn: none where the state is known exactly (the first frame), its error rounding.
+double Drawn(double nees, int dof) { return nees > 1e-9 ? nees / dof : kNaN; }
+
 Series NeesOf(const ResultData& data, const RunData& run, std::size_t system, Nees nees, int dof) {
   Numbers t, values;
   for (const ev::FrameConsistency& frame : run.judged->consistency) {
     t.push_back(Seconds(data, frame.stamp_ns));
-    values.push_back(frame.*nees / dof);
+    values.push_back(Drawn(frame.*nees, dof));
   }
   return LineOf(run.entry.system, system, t, values);
 }
@@ -58,7 +61,7 @@ void AddNees(const ResultData& data, const std::string& title, Nees nees, int do
     Numbers t, mean, low, high;
     for (const ev::AneesPoint& point : points) {
       t.push_back(Seconds(data, point.stamp_ns));
-      mean.push_back(point.anees / dof);
+      mean.push_back(Drawn(point.anees, dof));
       low.push_back(point.band.low / dof);
       high.push_back(point.band.high / dof);
     }
