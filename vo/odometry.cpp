@@ -43,6 +43,7 @@ struct Odometry::Impl {
       std::swap(trackers[0], trackers[1]);
       std::swap(estimates[0], estimates[1]);
     }
+    if (trackers.size() > 1 || !end) start_score = score(trackers[0]);
     if (end) trackers.erase(trackers.begin() + 1, trackers.end());
     FrameDiagnostics& diagnostics = estimates[0].diagnostics;
     for (std::size_t i = 1; i < estimates.size(); ++i) {  // the frame is prepared once
@@ -56,6 +57,7 @@ struct Odometry::Impl {
     params.features.readout_s = readout_s;
     for (Tracker& tracker : trackers) tracker.SetReadout(readout_s);
   }
+  std::unique_ptr<Impl> Restarted() const { return std::make_unique<Impl>(camera, params, prior, seed); }
   const Tracker& tracker() const { return trackers[0]; }
 
   Camera camera;
@@ -63,6 +65,7 @@ struct Odometry::Impl {
   Prior prior;
   std::uint64_t seed;
   std::vector<Tracker> trackers;  // the first answers
+  double start_score = 0;         // FilterAnswer's, the start's last
 };
 
 Odometry::Odometry(const Camera& camera, const Params& params, const Prior& prior, std::uint64_t seed)
@@ -92,11 +95,11 @@ Estimate Odometry::Calibrated(const PreparedFrame& frame, const Estimate& estima
   const bool starting = calibration_->starting();
   if (starting) {
     first_frames_.push_back({frame.frame.stamp_ns, frame.grey.clone()});  // the memory is the caller's
-    first_places_.push_back(estimate.pose.p_WC);
+    first_poses_.push_back(estimate.pose);
   }
   Estimate out = estimate;
   if (calibration_->Add(estimate.stamp_ns, estimate.pose, impl_->tracker().views())) {
-    if (ChangeReadout() && starting) out = TrackFirstFramesAgain();
+    if (ChangeReadout() && starting) out = TrackFirstFramesAgain(estimate);
     if (!calibration_->starting()) first_frames_.clear();
   }
   out.diagnostics.ms_filter += watch.Lap();
@@ -112,23 +115,30 @@ bool Odometry::ChangeReadout() {
 }
 
 // With the readout time that impl_ has now. Where the scale is unknown, the answers keep that of those already given.
-Estimate Odometry::TrackFirstFramesAgain() {
+// Where the turns differ by more than a readout time changes them, one of both starts is in a wrong mode: that which
+// explains its images worse. If it is the new one, the first continues, with its `estimate`.
+Estimate Odometry::TrackFirstFramesAgain(const Estimate& estimate) {
   constexpr int kRounds = 3;
+  constexpr double kOtherMode = 0.3;  // [rad]
+  std::unique_ptr<Impl> first = std::exchange(impl_, impl_->Restarted());
+  SelfCalibration calibration = std::exchange(*calibration_, calibration_->Restarted());
+  std::vector<StampedPose> reissued = reissued_;
   Estimate last;
+  double turn = 0;  // largest between the answers
   const Eigen::Vector3d origin = impl_->prior.pose.p_WC;
-  for (int round = 1; round <= kRounds; ++round) {
-    impl_ = std::make_unique<Impl>(impl_->camera, impl_->params, impl_->prior, impl_->seed);
-    calibration_->Restart();
+  for (int round = 1;; ++round) {
     reissued_.clear();
     double product = 0, square = 0;
+    turn = 0;
     for (std::size_t k = 0; k < first_frames_.size(); ++k) {
       last = impl_->Process(PreparedFrame(first_frames_[k]));
       reissued_.push_back({last.stamp_ns, last.pose});
       const std::vector<StampedPose>& start = impl_->tracker().reissued();
       std::copy(start.begin(), start.end(), reissued_.end() - static_cast<std::ptrdiff_t>(start.size()));
       calibration_->Add(last.stamp_ns, last.pose, impl_->tracker().views());
+      turn = std::max(turn, last.pose.q_WC.angularDistance(first_poses_[k].q_WC));
       const Eigen::Vector3d from_start = last.pose.p_WC - origin;
-      product += from_start.dot(first_places_[k] - origin);
+      product += from_start.dot(first_poses_[k].p_WC - origin);
       square += from_start.squaredNorm();
     }
     if (product > 0) {
@@ -137,8 +147,15 @@ Estimate Odometry::TrackFirstFramesAgain() {
     }
     calibration_->EndFit();  // of the last window too
     if (round == kRounds || !ChangeReadout()) break;
+    impl_ = impl_->Restarted();
+    *calibration_ = calibration_->Restarted();
   }
-  return impl_->tracker().Answer(last.stamp_ns, last.diagnostics);
+  if (turn < kOtherMode || impl_->start_score >= first->start_score)
+    return impl_->tracker().Answer(last.stamp_ns, last.diagnostics);
+  impl_ = std::move(first);
+  *calibration_ = std::move(calibration);
+  reissued_ = std::move(reissued);
+  return estimate;
 }
 
 std::vector<MapPoint> Odometry::Map() const { return impl_->tracker().Map(); }

@@ -43,13 +43,13 @@ class Odometry {
   struct Impl;
   Estimate Calibrated(const PreparedFrame& frame, const Estimate& estimate);
   bool ChangeReadout();
-  Estimate TrackFirstFramesAgain();
+  Estimate TrackFirstFramesAgain(const Estimate& estimate);
 
   std::unique_ptr<Impl> impl_;
   mutable std::optional<SelfCalibration> calibration_;  // its answer ends its fit
   std::vector<StampedPose> reissued_;
-  std::vector<Frame> first_frames_;            // as long as they may be tracked again
-  std::vector<Eigen::Vector3d> first_places_;  // answered in them
+  std::vector<Frame> first_frames_;  // as long as they may be tracked again
+  std::vector<Pose> first_poses_;    // answered in them
 };
 
 }  // namespace vo

@@ -86,13 +86,11 @@ std::optional<double> SelfCalibration::ChangeReadout() {
   return readout_s_ = value;
 }
 
-void SelfCalibration::Restart() {
-  windows_ = 0;
-  frames_.clear();
-  fitting_.reset();
-  readouts_.clear();
-  log_focals_.clear();
-  px_of_focal_ = 0;
+SelfCalibration SelfCalibration::Restarted() const {
+  SelfCalibration restarted(camera_, readout_s_);
+  restarted.stated_ = stated_;
+  restarted.period_s_ = period_s_;
+  return restarted;
 }
 
 CalibrationEstimate SelfCalibration::Estimate() {

@@ -45,8 +45,8 @@ class SelfCalibration {
   bool EndFit();  // all rounds of the present one, if any; returns whether there was one
   // The readout time from now on, where it differs significantly from that in use.
   std::optional<double> ChangeReadout();
-  // All frames are added again.
-  void Restart();
+  // The same without any frames, with the present readout time.
+  SelfCalibration Restarted() const;
 
   CalibrationEstimate Estimate();  // ends the fit
 

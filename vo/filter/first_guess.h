@@ -9,8 +9,9 @@
 
 namespace vo {
 
-// First guesses for other modes of the same images (multi-start): each is solved and compared by its objective. Sideways motion and rotation nearly explain each other as long as depths are unknown: several modes fit
-// nearly as well (depth reversal), and no later image undoes a wrong choice.
+// First guesses for other modes of the same images (multi-start): each is solved and compared by its objective.
+// Sideways motion and rotation nearly explain each other as long as depths are unknown: several modes fit nearly as
+// well (depth reversal), and no later image undoes a wrong choice.
 constexpr std::uint32_t kPerturbations = 6;
 constexpr std::uint32_t kGuesses = kPerturbations + 1;
 
