@@ -44,7 +44,7 @@ __attribute__((target("avx2"))) inline void Store(const Four& from, std::uint32_
 // Philox4x32-10 of counters, in place.
 template <class Lanes>
 [[gnu::always_inline]] inline void Philox(std::uint64_t seed, NoiseWords& words) {
-  for (std::size_t i = 0; i < NoiseWords::kCount; i += sizeof(Lanes) / sizeof(One)) {
+  for (std::size_t i = 0; i < NoiseWords::kCount; i += sizeof(Lanes) / 8) {
     Lanes x[4];
     for (std::size_t k = 0; k < 4; ++k) Load(&words.word[k][i], x[k]);
     auto key0 = static_cast<std::uint32_t>(seed), key1 = static_cast<std::uint32_t>(seed >> 32);

@@ -49,8 +49,8 @@ struct Square {
 // A += X J.
 template <int kSize>
 [[gnu::always_inline]] inline void AddProduct(const double* X, const double* J, double* A, Eigen::Index stride) {
-  for (int c = 0; c < kSize; ++c, A += stride) {
-    const double left = J[2 * c], right = J[2 * c + 1];
+  for (int c = 0; c < kSize; ++c, A += stride, J += 2) {
+    const double left = J[0], right = J[1];
     int r = 0;
     for (; r + kLanes <= kSize; r += kLanes)
       Store(Load<Doubles>(A + r) + (Load<Doubles>(X + r) * left + Load<Doubles>(X + kRateSlotSize + r) * right), A + r);
