@@ -45,6 +45,7 @@ std::vector<Eigen::Vector2i> DetectCorners(const cv::Mat& grey, const std::vecto
           cv::Rect(x0 - kFastMargin, y0 - kFastMargin, x1 - x0 + 2 * kFastMargin, y1 - y0 + 2 * kFastMargin) &
           cv::Rect(0, 0, grey.cols, grey.rows);
       std::vector<Eigen::Vector2d> best;
+      // A lower threshold adds weaker corners alone: its steps do not change which are found.
       for (int threshold = params.fast_threshold_start;;
            threshold = std::max(threshold * 4 / 9, params.fast_threshold_min)) {
         cv::FAST(grey(cell), corners, threshold, true);

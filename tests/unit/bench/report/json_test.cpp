@@ -55,8 +55,8 @@ TEST(RunJson, ReadsBackTheSame) {
 }
 
 TEST(RunJson, ListsEveryProblem) {
-  const std::string said = Complaint(
-      R"({"format":"vobench run 1","title":3,"input":"","command":"","started_utc":"","seconds":"x","versions":{},"notes":[],
+  const std::string said = Complaint(R"({"format":"vobench run 1","title":3,"input":"","command":"",)"
+                                     R"("started_utc":"","seconds":"x","versions":{},"notes":[],
           "runs":[{"system":"a","seed":-1,"path":"../b","seconds":1},{"seed":1.5,"path":"/etc","seconds":1}]})");
   for (const char* part :
        {"'title' has the wrong type: 3", "'seconds' has the wrong type", "'settings' is missing",
@@ -69,6 +69,13 @@ TEST(RunJson, ListsEveryProblem) {
   EXPECT_THAT(Complaint("[]"), HasSubstr("not an object"));
   const TemporaryFolder empty;
   EXPECT_THROW(ReadRunJson(empty.path()), InputError);
+}
+
+std::vector<RunMetrics> WriteOneSeed(const TemporaryFolder& folder) {
+  FakeOptions options;
+  options.pictures = false;
+  options.seeds = 1;
+  return WriteFakeResult(folder.path(), options);
 }
 
 TEST(MetricsJson, GivesEveryNumberItsUnitAndOrigin) {
@@ -114,10 +121,7 @@ TEST(MetricsJson, GivesEveryNumberItsUnitAndOrigin) {
 
 TEST(MetricsJson, TwoPosesHaveNoErrorAfterAnAlignment) {
   const TemporaryFolder folder;
-  FakeOptions options;
-  options.pictures = false;
-  options.seeds = 1;
-  auto judged = WriteFakeResult(folder.path(), options);
+  auto judged = WriteOneSeed(folder);
   judged[0].metrics.errors.pairs = 2;
   WriteMetricsJson(folder.path(), judged);
   const auto runs = nlohmann::json::parse(TemporaryFolder::Read(folder.path() / "metrics.json")).at("runs");
@@ -132,10 +136,7 @@ TEST(MetricsJson, TwoPosesHaveNoErrorAfterAnAlignment) {
 
 TEST(MetricsJson, GivesTheOptionsBack) {
   const TemporaryFolder folder;
-  FakeOptions options;
-  options.pictures = false;
-  options.seeds = 1;
-  auto judged = WriteFakeResult(folder.path(), options);
+  auto judged = WriteOneSeed(folder);
   judged[1].metrics.options.association = {evaluation::AssociationRule::nearest, 10'000'000};
   judged[1].metrics.options.gauge = evaluation::Gauge::first_pose;
   judged[1].metrics.options.rpe_delta_ns = 500'000'000;
