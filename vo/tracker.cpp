@@ -97,23 +97,35 @@ void Tracker::Begin(const PreparedFrame& frame, const Vector6& velocity) {
   if (params_.motion.adaptive) adaptive_.Keep(frame.grey);
 }
 
+double Tracker::SinceLast(std::int64_t stamp_ns) const {
+  return static_cast<double>(stamp_ns - *last_stamp_ns_) * 1e-9;
+}
+
+// A frame whose image repeats the last one: predicted, not associated.
+void Tracker::Repeat(std::int64_t stamp_ns) {
+  const double dt = SinceLast(stamp_ns);
+  since_update_.dt_s += dt;
+  adaptive_.Predict(filter_, dt, coasting_s_);
+  Update({});
+  start_.Add(stamp_ns, filter_.answer(), scale_);
+  last_stamp_ns_ = stamp_ns;
+  views_.clear();
+}
+
 // One iteration of Algorithm 1; sections of docs/algorithm.md.
 void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) {
-  const double dt = static_cast<double>(frame.frame.stamp_ns - *last_stamp_ns_) * 1e-9;
+  if (params_.motion.adaptive && adaptive_.IsRepeated(frame.grey)) {  // section 7.1
+    if (first_frame_) first_repeated_ns_.push_back(frame.frame.stamp_ns);
+    return Repeat(frame.frame.stamp_ns);
+  }
+  const double dt = SinceLast(frame.frame.stamp_ns);
   Stopwatch watch;
   since_update_.dt_s += dt;
-  if (params_.motion.adaptive && adaptive_.IsRepeated(frame.grey)) {  // section 7.1
-    adaptive_.Predict(filter_, dt, coasting_s_);
-    Update({});
-    start_.Add(frame.frame.stamp_ns, filter_.answer(), scale_);
-    last_stamp_ns_ = frame.frame.stamp_ns;
-    return views_.clear();
-  }
   ++frames_;
-  const auto associate = [&](const MotionInput& input) {
+  const auto associate = [&](const MotionInput& input, Search search) {
     since_update_.input = input;
-    return Associate(filter_, records_, camera_, frame, border_px_, since_update_, params_, noise_level_.value(),
-                     exposure_.seconds(), budget_);  // line 3: section 7
+    return Associate(filter_, records_, camera_, frame, border_px_, since_update_, search, params_,
+                     noise_level_.value(), exposure_.seconds(), budget_);  // line 3: section 7
   };
   Association association;
   if (params_.motion.adaptive) {
@@ -122,7 +134,7 @@ void Tracker::Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics) 
         [&](const Association& now, bool failed) { return Relocalise(frame, now, failed); });
   } else {
     filter_.Predict(dt);  // line 2: (6)-(9), (12), (13)
-    association = associate({});
+    association = associate({}, Search::usual);
   }
   if (params_.motion.adaptive && params_.features.subpixel) exposure_.Learn(association.moving, records_, frame.smooth);
   diagnostics.ms_matching += watch.Lap();
@@ -189,12 +201,14 @@ void Tracker::BeginAgain(const PreparedFrame& frame, Association& association, F
 void Tracker::RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics) {
   constexpr int kRounds = 6;
   const PreparedFrame first = *std::exchange(first_frame_, std::nullopt);
+  const std::vector<std::int64_t> repeated_ns = first_repeated_ns_;
   const double dt = static_cast<double>(second.frame.stamp_ns - first.frame.stamp_ns) * 1e-9;
   for (int round = 1; round < kRounds && diagnostics.matched >= FrameDiagnostics::kTrackedMatches; ++round) {
     const Vector6 velocity = MinusNear(filter_.belief().pose, prior_.pose, dt * prior_.w_WC_C) / dt;
     const std::optional<MotionInput> input = adaptive_.repeated_input();
     *this = Restarted();
     Begin(first, velocity);
+    for (const std::int64_t stamp_ns : repeated_ns) Repeat(stamp_ns);
     adaptive_.BeginWith(input);
     Follow(second, diagnostics);
   }

@@ -47,6 +47,8 @@ class Tracker {
  private:
   void Start(const PreparedFrame& frame);
   void Begin(const PreparedFrame& frame, const Vector6& velocity);
+  double SinceLast(std::int64_t stamp_ns) const;  // [s]
+  void Repeat(std::int64_t stamp_ns);
   void Follow(const PreparedFrame& frame, FrameDiagnostics& diagnostics);
   void BeginAgain(const PreparedFrame& frame, Association& association, FrameDiagnostics& diagnostics);
   void RestartFirstFrame(const PreparedFrame& second, FrameDiagnostics& diagnostics);
@@ -93,9 +95,10 @@ class Tracker {
   Relocaliser relocaliser_;
   std::optional<KnownDepth> typical_depth_;
   int frames_ = 0;
-  double path_length_ = 0;                    // [m] of all answers
-  int first_id_ = 0, next_id_ = 0;            // of the landmarks since this start; of the next one
-  std::optional<PreparedFrame> first_frame_;  // with a rolling shutter, until the second frame
+  double path_length_ = 0;                       // [m] of all answers
+  int first_id_ = 0, next_id_ = 0;               // of the landmarks since this start; of the next one
+  std::optional<PreparedFrame> first_frame_;     // with a rolling shutter, until the second frame
+  std::vector<std::int64_t> first_repeated_ns_;  // stamps of the frames between the two, which repeat its image
 };
 
 }  // namespace vo

@@ -14,7 +14,8 @@ constexpr int kWidenings = 2;
 constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
 constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
 constexpr int kLeastRecognised = 15;
-constexpr double kLeastRecall = 0.4;  // of the landmarks expected from the recognised ones
+constexpr double kLeastRecall = 0.4;        // of the landmarks expected from the recognised ones
+constexpr std::size_t kEnoughToBegin = 30;  // matches of a wide search
 constexpr double kClearlyMore = 1.2;
 constexpr std::size_t kClearlyMoreMatches = 3;
 constexpr double kLeastMatches = 8, kLeastAgreement = 0.1, kLeastAgreementAtTheStart = 0.25;
@@ -49,16 +50,16 @@ bool ShowsThePlace(const Association& association) {
 // The best prediction of a frame so far, and its association.
 struct Trial {
   Filter& filter;
-  const std::function<Association(const MotionInput&)>& associate;
+  const AdaptiveAssociation::Associate& associate;
   MotionInput input;
   Association association;
   int repeated = 0;  // predictions kept after the first
 
   // The same with another prediction, which is kept where `better` than the present one.
   template <class Better>
-  bool Repeat(const MotionInput& other, const Better& better) {
+  bool Repeat(const MotionInput& other, const Better& better, Search search = Search::usual) {
     filter.PredictAgain(other);
-    Association again = associate(other);
+    Association again = associate(other, search);
     if (better(again)) {
       ++repeated;
       input = other;
@@ -109,12 +110,11 @@ bool AdaptiveAssociation::IsRepeated(const cv::Mat& grey) {
 }
 
 Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
-                                                     const std::function<Association(const MotionInput&)>& associate,
-                                                     const Relocalise& relocalise) {
+                                                     const Associate& associate, const Relocalise& relocalise) {
   const std::optional<MotionInput> known = std::exchange(begin_with_, std::nullopt);
   const MotionInput first = known.value_or(Input(filter, coasting_s));
   filter.Predict(dt, first);
-  Trial trial{filter, associate, first, associate(first)};
+  Trial trial{filter, associate, first, associate(first, Search::usual)};
   const double usual = usual_agreement_.Least(AgreementOf(trial.association));
   const double least = trial.initialising() ? kFailedAgreementAtTheStart : usual;
   const auto failed = [&] { return Failed(trial.association, least); };
@@ -133,6 +133,12 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
                                                again.matches.size() >= trial.association.matches.size());
       });
     }
+  }
+  if (failed() && !(trial.initialising() && trial.HasMatches())) {
+    const auto enough = [&](const Association& again) {
+      return trial.HasClearlyMore(again) && (!trial.initialising() || again.matches.size() >= kEnoughToBegin);
+    };
+    trial.Repeat(Widened(trial.input, RatiosOf(trial.association)), enough, Search::wide);
   }
   if (const auto recognised = relocalise(trial.association, failed())) {
     MotionInput moved = trial.input;

@@ -1,6 +1,6 @@
 // Association of a frame whose prediction may fail: process noise estimated on line, the prediction repeated with more
-// noise, then about the rotation found by direct alignment of the images. A repetition is kept where clearly more
-// matches agree; a frame in which too few agree has no matches.
+// noise, then about the rotation found by direct alignment of the images, then with a wide search. A repetition is kept
+// where clearly more matches agree; a frame in which too few agree has no matches.
 // Source:  docs/algorithm.md, section 7.1.
 #pragma once
 
@@ -32,11 +32,11 @@ class AdaptiveAssociation {
   // Correction of the path where the frame shows landmarks that the association does not find; `failed`: its
   // prediction.
   using Relocalise = std::function<std::optional<PathCorrection>(const Association& association, bool failed)>;
+  using Associate = std::function<Association(const MotionInput&, Search)>;
   // `associate` is called after each prediction, with its input. `coasting_s`: time from the first frame without
   // matches to the last frame; 0 where that had matches.
   Association PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
-                                  const std::function<Association(const MotionInput&)>& associate,
-                                  const Relocalise& relocalise);
+                                  const Associate& associate, const Relocalise& relocalise);
 
   // Input of the last association, if its first prediction had failed and another was kept.
   const std::optional<MotionInput>& repeated_input() const { return repeated_input_; }

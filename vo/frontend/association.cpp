@@ -7,6 +7,7 @@
 
 #include "vo/features/matcher.h"
 #include "vo/filter/consensus.h"
+#include "vo/frontend/corner_recognition.h"
 #include "vo/frontend/moving_points.h"
 #include "vo/frontend/search_set.h"
 #include "vo/map/landmark_record.h"
@@ -77,7 +78,8 @@ SearchRequest Refined(const AssociationContext& in, const PoseGaussian& pose, co
 // pose. `requests` become those of the small windows.
 Results SearchCoarseToFine(const AssociationContext& in, const std::vector<Candidate>& candidates,
                            std::vector<SearchRequest>& requests) {
-  const std::vector<std::size_t> coarse = SelectCoarseFeatures(candidates, in.records, in.camera, in.params.features);
+  const std::vector<std::size_t> coarse =
+      SelectCoarseFeatures(candidates, in.records, in.camera, in.params.features, in.search == Search::wide);
   if (coarse.empty()) return SearchAll(in, requests);
 
   Results results(candidates.size());
@@ -109,6 +111,34 @@ Results SearchCoarseToFine(const AssociationContext& in, const std::vector<Candi
   for (std::size_t i = 0, k = 0; i < candidates.size(); ++i)
     if (!is_coarse[i]) results[i] = fine_results[k++];
   return results;
+}
+
+// Search of the missed landmarks about the corners at which they are recognised, within the widest window.
+void SearchAtCorners(const AssociationContext& in, const std::vector<SearchRequest>& requests, int border_px,
+                     Results& results) {
+  constexpr int kMoreCorners = 8;  // per cell
+  std::vector<std::size_t> missed;
+  std::vector<const Descriptor*> known;
+  for (std::size_t i = 0; i < requests.size(); ++i) {
+    if (results[i].found || !results[i].in_sight) continue;
+    missed.push_back(i);
+    known.push_back(&requests[i].appearance->descriptor);
+  }
+  const FeatureParams& params = in.params.features;
+  std::vector<std::size_t> chosen;
+  std::vector<SearchRequest> again;
+  for (const auto& [index, pixel] : RecogniseCorners(in.frame, known, params, kMoreCorners, border_px)) {
+    SearchRequest request = requests[missed[index]];
+    const Eigen::Vector2d corner = pixel.cast<double>();
+    if (2 * (corner - request.predicted).cwiseAbs().maxCoeff() > params.search_relocalise_px) continue;
+    request.predicted = corner;
+    request.widest_px = params.search_normal_px;
+    chosen.push_back(missed[index]);
+    again.push_back(request);
+  }
+  const Results found = SearchAll(in, again);
+  for (std::size_t k = 0; k < chosen.size(); ++k)
+    if (found[k].found) results[chosen[k]] = found[k];
 }
 
 std::vector<Match> MatchesOf(const AssociationContext& in, std::span<const Candidate> candidates,
@@ -172,14 +202,15 @@ bool SearchAgain(const AssociationContext& in, std::span<const Candidate> candid
 }  // namespace
 
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
-                      const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
-                      double noise_level, double exposure_s, int budget) {
+                      const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, Search search,
+                      const Params& params, double noise_level, double exposure_s, int budget) {
   const AssociationContext in{filter,
                               records,
                               camera,
                               frame,
                               params,
                               since_update,
+                              search,
                               RollingShutter(camera, params.features),
                               filter.Reference(),
                               noise_level,
@@ -190,6 +221,7 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
   std::vector<SearchRequest> requests;
   for (const Candidate& c : candidates) requests.push_back(RequestFor(in, c));
   Results results = SearchCoarseToFine(in, candidates, requests);
+  if (search == Search::wide) SearchAtCorners(in, requests, border_px, results);
   std::vector<Match> matches;
   Consensus consensus = RobustPose(in, candidates, results, matches);
   const auto agree = std::ranges::count(consensus.inlier, true);

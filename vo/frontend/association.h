@@ -18,6 +18,10 @@
 
 namespace vo {
 
+// Search about a prediction: in windows; in a frame whose predictions have failed, also with young coarse features, and
+// at the corners where landmarks are recognised.
+enum class Search { usual, wide };
+
 // A landmark that was found, or that is predicted to be visible and was not.
 struct Searched {
   int landmark = 0;
@@ -50,8 +54,8 @@ struct Association {
 // After filter.Predict(). `records` are in the order of the filter's landmarks; `exposure_s` is 0 where it is unknown;
 // `budget`: landmarks of known depth to search for at most.
 Association Associate(const Filter& filter, std::span<const LandmarkRecord> records, const Camera& camera,
-                      const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, const Params& params,
-                      double noise_level, double exposure_s, int budget);
+                      const PreparedFrame& frame, int border_px, const SinceUpdate& since_update, Search search,
+                      const Params& params, double noise_level, double exposure_s, int budget);
 
 // Landmarks of known depth to search for in the next frame: enough_matches over the share of the searched that agrees
 // in this one; max_searched where its prediction failed.

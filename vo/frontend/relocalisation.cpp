@@ -4,57 +4,34 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
-#include <opencv2/features2d.hpp>
 
-#include "vo/features/corner_detector.h"
-#include "vo/features/matcher.h"
+#include "vo/frontend/corner_recognition.h"
 
 namespace vo {
 namespace {
 
-constexpr int kMoreCorners = 2;      // per cell, for a landmark's corner to be among them
-constexpr float kMostHamming = 112;  // of 512 bits: the corner is found a pixel aside, and seen from elsewhere
-constexpr float kRatio = 0.85F;      // of the nearest neighbour's distance to the second nearest's
+constexpr int kMoreCorners = 2;  // per cell
 constexpr double kThreshold_px = 4;
 constexpr int kIterations = 110;  // enough where half of the matches are inliers: ln(1 - kConfidence) / ln(1 - 0.5^4)
 constexpr double kConfidence = 0.999;
 
-cv::Mat Row(const Descriptor& descriptor) {
-  return cv::Mat(1, sizeof(Descriptor), CV_8U, const_cast<std::uint64_t*>(descriptor.data()));
-}
-
 }  // namespace
 
 Relocaliser::Relocaliser(const Camera& camera, const FeatureParams& params, int border_px)
-    : camera_(camera), params_(params), border_px_(border_px), sampler_(FirstSampler(params)) {
-  params_.per_cell *= kMoreCorners;
-}
+    : camera_(camera), params_(params), border_px_(border_px) {}
 
 std::optional<Relocalisation> Relocaliser::Find(const PreparedFrame& frame, std::span<const KnownPoint> points) const {
   if (points.size() < kLeastInliers) return std::nullopt;
-  const std::vector<Eigen::Vector2i> corners = DetectCorners(frame.grey, {}, border_px_, params_);
-  if (corners.size() < kLeastInliers) return std::nullopt;
-  cv::Mat seen, known;
-  for (const Eigen::Vector2i& corner : corners) seen.push_back(Row(frame.brisk.Describe(corner, sampler_)));
-  for (const KnownPoint& point : points) known.push_back(Row(*point.descriptor));
-
-  std::vector<std::vector<cv::DMatch>> neighbours;
-  cv::BFMatcher(cv::NORM_HAMMING).knnMatch(known, seen, neighbours, 2);
-  std::vector<const cv::DMatch*> of_corner(corners.size(), nullptr);  // the nearest of the landmarks
-  for (const std::vector<cv::DMatch>& nearest : neighbours) {
-    if (nearest.size() < 2 || nearest[0].distance > std::min(kMostHamming, kRatio * nearest[1].distance)) continue;
-    const cv::DMatch*& best = of_corner[static_cast<std::size_t>(nearest[0].trainIdx)];
-    if (best == nullptr || nearest[0].distance < best->distance) best = nearest.data();
-  }
+  std::vector<const Descriptor*> known;
+  for (const KnownPoint& point : points) known.push_back(point.descriptor);
   std::vector<int> matched;
   std::vector<cv::Point3d> X;
   std::vector<cv::Point2d> z;
-  for (const cv::DMatch* match : of_corner) {
-    if (match == nullptr) continue;
-    const auto ray = camera_.TryUnproject(corners[static_cast<std::size_t>(match->trainIdx)].cast<double>());
+  for (const auto& [index, pixel] : RecogniseCorners(frame, known, params_, kMoreCorners, border_px_)) {
+    const auto ray = camera_.TryUnproject(pixel.cast<double>());
     if (!ray) continue;
-    const Eigen::Vector3d& X_W = points[static_cast<std::size_t>(match->queryIdx)].X_W;
-    matched.push_back(match->queryIdx);
+    const Eigen::Vector3d& X_W = points[index].X_W;
+    matched.push_back(static_cast<int>(index));
     X.emplace_back(X_W.x(), X_W.y(), X_W.z());
     z.emplace_back(ray->x(), ray->y());
   }

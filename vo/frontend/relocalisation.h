@@ -1,7 +1,6 @@
 // Relocalisation: the camera's pose from landmarks recognised by their descriptors alone, independent of the
 // prediction.
-// Source:  nearest neighbours with Lowe's ratio test ("Distinctive image features", 2004); P3P and consensus (Fischler
-//          & Bolles 1981), by OpenCV's solvePnPRansac. docs/algorithm.md, section 7.2.
+// Source:  P3P and consensus (Fischler & Bolles 1981), by OpenCV's solvePnPRansac; docs/algorithm.md, section 7.2.
 // Frames:  points in W, poses T_WC; image points on the plane z = 1.
 #pragma once
 
@@ -41,7 +40,6 @@ class Relocaliser {
   Camera camera_;
   FeatureParams params_;
   int border_px_;
-  BriskSampler sampler_;
 };
 
 }  // namespace vo

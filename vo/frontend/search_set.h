@@ -30,6 +30,7 @@ struct AssociationContext {
   const PreparedFrame& frame;
   const Params& params;
   SinceUpdate since_update;
+  Search search;
   RollingShutter shutter;
   ReferencePath reference;
   double noise_level;
@@ -66,10 +67,10 @@ SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidat
 
 // Indices of params.coarse_features candidates: spread over the image, in each part of it those of high score and known
 // depth first. Empty where fewer have been in the map for ten frames: matches about the prediction of an unknown depth
-// would be biased towards it.
+// are biased towards it. With `young`, for a frame whose prediction has failed, those matched in the last frame suffice.
 std::vector<std::size_t> SelectCoarseFeatures(std::span<const Candidate> candidates,
                                               std::span<const LandmarkRecord> records, const Camera& camera,
-                                              const FeatureParams& params);
+                                              const FeatureParams& params, bool young);
 
 // Robust fit of the pose to the coarse matches. None when fewer than six of them are inliers, or fewer than half.
 std::optional<PoseGaussian> FitCoarsePose(const PoseGaussian& prediction, const LocalMap& map,

@@ -135,6 +135,29 @@ TEST(Odometry, PredictsAQuickFirstTurnFromTheImages) {
   }
 }
 
+// Camera shaken by up to 20 px from one image to the next, against a prior that knows its velocity. Landmarks outside of
+// their windows are recognised at corners.
+TEST(Odometry, RecognisesLandmarksAtCorners) {
+  constexpr int kFrames = 20;
+  constexpr unsigned kTextures = 6;
+  constexpr double kShaken = 0.04;  // [rad]
+  int followed = 0;
+  for (unsigned seed = 1; seed <= kTextures; ++seed) {
+    const vo_test::Texture texture(seed, 40.0, 24);
+    vo::Params params = SmallImageParams();
+    params.motion.adaptive = true;
+    vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+    for (int k = 0; k < kFrames; ++k) {
+      vo::Pose pose = TruthAt(k);
+      pose.q_WC = pose.q_WC * vo::Exp({kShaken * std::sin(1.9 * k), kShaken * std::sin(1.4 * k), 0});
+      const vo::FrameDiagnostics d = odometry.Track({k * kFrameNs, ViewFrom(pose, texture)}).diagnostics;
+      followed += d.matched >= vo::FrameDiagnostics::kTrackedMatches;
+    }
+  }
+  std::printf("matches in %d of %d frames\n", followed, kFrames * kTextures);
+  EXPECT_GT(followed, 90);  // 68 with windows alone
+}
+
 // Shaken camera: 12 px and more between two images, which are blurred over half of the time between them. Landmarks
 // that are not found with the predicted place and blur are searched again at the pose given by the other matches.
 TEST(Odometry, SearchesAgainAtThePoseThatMatchesShow) {
@@ -254,6 +277,27 @@ TEST(Odometry, ReissuesTheStart) {
     std::printf("readout %g s: rms of the start [mm] %.2f, answered %.2f\n", readout, 1e3 * ScaledRms(reissued),
                 1e3 * ScaledRms(answered));
     EXPECT_LT(ScaledRms(reissued), ScaledRms(answered));
+  }
+}
+
+// The same where the second image repeats the first: its frame has a pose, between those of its neighbours.
+TEST(Odometry, ReissuesAStartWithRepeatedImages) {
+  constexpr int kWindow = 6;
+  const vo_test::Texture texture(3, 40.0, 24);
+  for (const double readout : {0.0, 5e-3}) {
+    vo::Params params = SmallImageParams();
+    params.motion.adaptive = true;
+    params.filter.start_window = kWindow;
+    params.features.readout_s = readout;
+    vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+    std::vector<vo::StampedPose> reissued;
+    for (int k = 0; reissued.empty() && k < 2 * kWindow; ++k) {
+      odometry.Track({k * kFrameNs, ViewFrom(TruthAt(k == 1 ? 0 : k), texture)});
+      reissued = odometry.Reissued();
+    }
+    ASSERT_GT(reissued.size(), 3u) << readout;
+    for (std::size_t k = 0; k < reissued.size(); ++k)
+      EXPECT_EQ(reissued[k].stamp_ns, static_cast<std::int64_t>(k) * kFrameNs) << readout;
   }
 }
 
