@@ -14,8 +14,9 @@ constexpr int kWidenings = 2;
 constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
 constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
 constexpr int kLeastRecognised = 15;
-constexpr double kLeastRecall = 0.4;        // of the landmarks expected from the recognised ones
-constexpr std::size_t kEnoughToBegin = 30;  // matches of a wide search
+constexpr double kLeastRecall = 0.4;         // of the landmarks expected from the recognised ones
+constexpr double kDoubtfulAtTheStart = 0.5;  // agreement below which a wide search may change the mode
+constexpr std::size_t kEnoughToBegin = 30;   // matches of that search
 constexpr double kClearlyMore = 1.2;
 constexpr std::size_t kClearlyMoreMatches = 3;
 constexpr double kLeastMatches = 8, kLeastAgreement = 0.1, kLeastAgreementAtTheStart = 0.25;
@@ -134,7 +135,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
       });
     }
   }
-  if (failed() && !(trial.initialising() && trial.HasMatches())) {
+  if (failed() && (!trial.initialising() || AgreementOf(trial.association) < kDoubtfulAtTheStart)) {
     const auto enough = [&](const Association& again) {
       return trial.HasClearlyMore(again) && (!trial.initialising() || again.matches.size() >= kEnoughToBegin);
     };
