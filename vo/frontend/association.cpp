@@ -79,7 +79,7 @@ SearchRequest Refined(const AssociationContext& in, const PoseGaussian& pose, co
 Results SearchCoarseToFine(const AssociationContext& in, const std::vector<Candidate>& candidates,
                            std::vector<SearchRequest>& requests) {
   const std::vector<std::size_t> coarse =
-      SelectCoarseFeatures(candidates, in.records, in.camera, in.params.features, in.search == Search::wide);
+      SelectCoarseFeatures(candidates, in.records, in.camera, in.params.features, in.search);
   if (coarse.empty()) return SearchAll(in, requests);
 
   Results results(candidates.size());

@@ -22,10 +22,10 @@ cv::Mat Row(const Descriptor& descriptor) {
 
 std::vector<RecognisedCorner> RecogniseCorners(const PreparedFrame& frame, std::span<const Descriptor* const> known,
                                                FeatureParams params, int corners_factor, int border_px) {
+  if (known.empty()) return {};
   params.per_cell *= corners_factor;
   const std::vector<Eigen::Vector2i> corners = DetectCorners(frame.grey, {}, border_px, params);
-  std::vector<RecognisedCorner> recognised;
-  if (corners.empty() || known.empty()) return recognised;
+  if (corners.empty()) return {};
   const BriskSampler sampler = FirstSampler(params);
   cv::Mat of_corners, of_known;
   for (const Eigen::Vector2i& corner : corners) of_corners.push_back(Row(frame.brisk.Describe(corner, sampler)));
@@ -39,6 +39,7 @@ std::vector<RecognisedCorner> RecogniseCorners(const PreparedFrame& frame, std::
     const cv::DMatch*& best = of_corner[static_cast<std::size_t>(nearest[0].trainIdx)];
     if (best == nullptr || nearest[0].distance < best->distance) best = nearest.data();
   }
+  std::vector<RecognisedCorner> recognised;
   for (std::size_t i = 0; i < corners.size(); ++i)
     if (of_corner[i] != nullptr) recognised.push_back({static_cast<std::size_t>(of_corner[i]->queryIdx), corners[i]});
   return recognised;

@@ -121,13 +121,13 @@ SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidat
 
 std::vector<std::size_t> SelectCoarseFeatures(std::span<const Candidate> candidates,
                                               std::span<const LandmarkRecord> records, const Camera& camera,
-                                              const FeatureParams& params, bool young) {
+                                              const FeatureParams& params, Search search) {
   const auto record = [&](std::size_t i) -> const LandmarkRecord& { return records[candidates[i].landmark]; };
   const auto count = static_cast<std::size_t>(params.coarse_features);
   std::vector<std::size_t> preferred;
   for (std::size_t i = 0; i < candidates.size(); ++i)
     if (record(i).age >= kMinAge) preferred.push_back(i);
-  if (young && preferred.size() < count) {
+  if (search == Search::wide && preferred.size() < count) {
     for (std::size_t i = 0; i < candidates.size(); ++i)
       if (record(i).age < kMinAge && record(i).age > 0 && record(i).frames_unmatched == 0) preferred.push_back(i);
   }

@@ -67,10 +67,10 @@ SearchRequest RequestFor(const AssociationContext& in, const Candidate& candidat
 
 // Indices of params.coarse_features candidates: spread over the image, in each part of it those of high score and known
 // depth first. Empty where fewer have been in the map for ten frames: matches about the prediction of an unknown depth
-// are biased towards it. With `young`, for a frame whose prediction has failed, those matched in the last frame suffice.
+// are biased towards it. In a wide search those matched in the last frame suffice.
 std::vector<std::size_t> SelectCoarseFeatures(std::span<const Candidate> candidates,
                                               std::span<const LandmarkRecord> records, const Camera& camera,
-                                              const FeatureParams& params, bool young);
+                                              const FeatureParams& params, Search search);
 
 // Robust fit of the pose to the coarse matches. None when fewer than six of them are inliers, or fewer than half.
 std::optional<PoseGaussian> FitCoarsePose(const PoseGaussian& prediction, const LocalMap& map,

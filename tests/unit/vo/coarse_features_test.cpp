@@ -123,7 +123,8 @@ TEST(CoarseFeatures, AreSettledPreciseAndSpread) {
   }
   vo::FeatureParams params;
   params.coarse_features = 16;
-  const std::vector<std::size_t> coarse = vo::SelectCoarseFeatures(candidates, records, kCamera, params, false);
+  const std::vector<std::size_t> coarse =
+      vo::SelectCoarseFeatures(candidates, records, kCamera, params, vo::Search::usual);
   ASSERT_EQ(coarse.size(), 16u);
   std::set<std::pair<int, int>> cells;
   for (const std::size_t i : coarse) {
@@ -133,14 +134,15 @@ TEST(CoarseFeatures, AreSettledPreciseAndSpread) {
   EXPECT_EQ(cells.size(), 16u) << "one in each part of the image";
 
   for (int n = 10; n < 100; ++n) records[n].age = 9;
-  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, records, kCamera, params, false).empty())
+  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, records, kCamera, params, vo::Search::usual).empty())
       << "ten settled landmarks are not sixteen";
   for (int n = 10; n < 100; ++n) records[n].frames_unmatched = n % 10 == 0 ? 0 : 1;
-  const std::vector<std::size_t> young = vo::SelectCoarseFeatures(candidates, records, kCamera, params, true);
+  const std::vector<std::size_t> young =
+      vo::SelectCoarseFeatures(candidates, records, kCamera, params, vo::Search::wide);
   EXPECT_EQ(young.size(), 16u);
   for (const std::size_t i : young) EXPECT_TRUE(i < 10 || i % 10 == 0) << i << ": not matched in the last frame";
   params.coarse_features = 0;
-  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, records, kCamera, params, false).empty());
+  EXPECT_TRUE(vo::SelectCoarseFeatures(candidates, records, kCamera, params, vo::Search::usual).empty());
 }
 
 TEST(BucketRoundRobin, TakesOneOfEachCellBeforeASecond) {

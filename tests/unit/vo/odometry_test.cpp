@@ -135,8 +135,8 @@ TEST(Odometry, PredictsAQuickFirstTurnFromTheImages) {
   }
 }
 
-// Camera shaken by up to 20 px from one image to the next, against a prior that knows its velocity. Landmarks outside of
-// their windows are recognised at corners.
+// Camera shaken by up to 20 px from one image to the next, against a prior that knows its velocity. Landmarks outside
+// of their windows are recognised at corners.
 TEST(Odometry, RecognisesLandmarksAtCorners) {
   constexpr int kFrames = 20;
   constexpr unsigned kTextures = 6;
