@@ -33,7 +33,7 @@ Tracker::Tracker(const Camera& camera, const Params& params, const Prior& prior,
       border_px_(std::max(first_sampler_.margin(), Patch::kRadius)),
       detector_(camera, params, border_px_),
       budget_(params.features.max_searched),
-      adaptive_(camera),
+      adaptive_(camera, params.motion),
       relocaliser_(camera, params.features, border_px_) {}
 
 void Tracker::Require(const Frame& frame) const {

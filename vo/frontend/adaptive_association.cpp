@@ -11,8 +11,9 @@ namespace {
 // Innovation ratio of a failed prediction, and the least agreement of the searched at the start.
 constexpr double kFailedRatio = 11, kFailedAgreementAtTheStart = 0.65;
 constexpr int kWidenings = 2;
-constexpr double kAlignedNoise = 4;       // factor on the densities about an aligned rotation
-constexpr double kRelocalisedNoise = 16;  // the same about the pose from recognised landmarks
+constexpr double kAlignedNoise = 4;          // factor on the densities about an aligned rotation
+constexpr double kAlignedSigma = 1.0 / 640;  // of an aligned rotation, of the image's width
+constexpr double kRelocalisedNoise = 16;     // the same about the pose from recognised landmarks
 constexpr int kLeastRecognised = 15;
 constexpr double kLeastRecall = 0.4;         // of the landmarks expected from the recognised ones
 constexpr double kDoubtfulAtTheStart = 0.5;  // agreement below which a wide search may change the mode
@@ -93,6 +94,20 @@ double UsualAgreement::Least(double agreement) {
   return least;
 }
 
+MotionInput AdaptiveAssociation::Aligned(const MotionInput& input, const Eigen::Quaterniond& turn, double dt,
+                                         bool initialising) const {
+  MotionInput aligned = input;
+  aligned.turn = turn;
+  aligned.orientation_noise *= kAlignedNoise;
+  if (initialising) {
+    aligned.position_noise *= kAlignedNoise;
+    return aligned;
+  }
+  const double sigma = kAlignedSigma * camera_.width / camera_.fx / motion_.orientation_noise;
+  aligned.orientation_noise = std::max(aligned.orientation_noise, 3 * sigma * sigma / (dt * dt * dt));  // (9)
+  return aligned;
+}
+
 MotionInput AdaptiveAssociation::Input(const Filter& filter, double coasting_s) const {
   MotionInput input = noise_.Input(filter.answer().belief.pose.q_WC);
   input.coasting_s = coasting_s;
@@ -116,24 +131,31 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
   const MotionInput first = known.value_or(Input(filter, coasting_s));
   filter.Predict(dt, first);
   Trial trial{filter, associate, first, associate(first, Search::usual)};
+  Pose predicted = trial.association.predicted.mean;  // by the motion model alone
   const double usual = usual_agreement_.Least(AgreementOf(trial.association));
   const double least = trial.initialising() ? kFailedAgreementAtTheStart : usual;
   const auto failed = [&] { return Failed(trial.association, least); };
   const auto clearly_more = [&](const Association& again) { return trial.HasClearlyMore(again); };
   const bool first_failed = known || failed();
-  for (int k = 0; k < kWidenings && failed(); ++k)
-    if (!trial.Repeat(Widened(trial.input, RatiosOf(trial.association)), clearly_more)) break;
-  if (failed() && !last_.empty()) {
-    if (const auto R = AlignRotation(camera_, Thumbnails(last_), Thumbnails(grey))) {
-      MotionInput aligned = first;
-      aligned.position_noise *= kAlignedNoise;
-      aligned.orientation_noise *= kAlignedNoise;
-      aligned.turn = R->conjugate();
-      trial.Repeat(aligned, [&](const Association& again) {  // without matches it is the better prediction
-        return trial.HasClearlyMore(again) || (!trial.initialising() && !trial.HasMatches() &&
-                                               again.matches.size() >= trial.association.matches.size());
-      });
-    }
+  const auto widen = [&] {
+    for (int k = 0; k < kWidenings && failed(); ++k)
+      if (!trial.Repeat(Widened(trial.input, RatiosOf(trial.association)), clearly_more)) break;
+  };
+  const auto align = [&] {
+    if (!failed() || last_.empty()) return;
+    const auto R = AlignRotation(camera_, Thumbnails(last_), Thumbnails(grey));
+    if (!R) return;
+    trial.Repeat(Aligned(first, R->conjugate(), dt, trial.initialising()), [&](const Association& again) {
+      return trial.HasClearlyMore(again) || (!trial.initialising() && !trial.HasMatches() &&  // the better prediction
+                                             again.matches.size() >= trial.association.matches.size());
+    });
+  };
+  if (trial.initialising()) {  // its velocity is not known yet
+    widen();
+    align();
+  } else {
+    align();
+    widen();
   }
   if (failed() && (!trial.initialising() || AgreementOf(trial.association) < kDoubtfulAtTheStart)) {
     const auto enough = [&](const Association& again) {
@@ -146,7 +168,7 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     moved.position_noise *= kRelocalisedNoise;
     moved.orientation_noise *= kRelocalisedNoise;
     moved.correction = recognised;
-    trial.Repeat(moved, ShowsThePlace);
+    if (trial.Repeat(moved, ShowsThePlace)) predicted = trial.association.predicted.mean;
   }
   repeated_input_ = known || trial.repeated > 0 ? std::optional(trial.input) : std::nullopt;
   trial.association.repeated = trial.repeated + (known ? 1 : 0);
@@ -155,7 +177,8 @@ Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, 
     return std::move(trial.association);
   }
   const InnovationRatios shown = RatiosOf(trial.association);
-  noise_.Learn(trial.association.predicted, trial.association.agreed, trial.input, first_failed || trial.repeated > 0);
+  noise_.Learn({predicted, trial.association.predicted.covariance}, trial.association.agreed, trial.input,
+               first_failed || trial.repeated > 0);
   if (const auto more = Inflated(trial.input, shown)) filter.PredictAgain(*more);
   return std::move(trial.association);
 }

@@ -27,7 +27,7 @@ class UsualAgreement {
 
 class AdaptiveAssociation {
  public:
-  explicit AdaptiveAssociation(const Camera& camera) : camera_(camera) {}
+  AdaptiveAssociation(const Camera& camera, const MotionParams& motion) : camera_(camera), motion_(motion) {}
 
   // Correction of the path where the frame shows landmarks that the association does not find; `failed`: its
   // prediction.
@@ -56,7 +56,12 @@ class AdaptiveAssociation {
  private:
   MotionInput Input(const Filter& filter, double coasting_s) const;
 
+  // The input with a turn measured by direct alignment, which determines a rotation and leaves the position to the
+  // model, but for the start, whose velocity is not known.
+  MotionInput Aligned(const MotionInput& input, const Eigen::Quaterniond& turn, double dt, bool initialising) const;
+
   Camera camera_;
+  MotionParams motion_;
   AdaptiveNoise noise_;
   cv::Mat last_;  // grey image of the last pose
   int repetitions_ = 0;
