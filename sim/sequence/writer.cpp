@@ -38,7 +38,7 @@ SequenceWriter::SequenceWriter(const Simulator& simulator, const fs::path& folde
   for (std::int64_t index = content_.first; index < content_.last; ++index) {
     if (!whole_.contains(index)) left_.push_back(index);
   }
-  found_ = told_ = static_cast<std::int64_t>(whole_.size());
+  found_ = notified_ = static_cast<std::int64_t>(whole_.size());
   const std::size_t count = std::min(static_cast<std::size_t>(jobs), left_.size());
   for (std::size_t i = 0; i < count; ++i) threads_.emplace_back([this] { Work(); });
 }
@@ -152,10 +152,10 @@ void SequenceWriter::Work() {
 std::int64_t SequenceWriter::Wait() {
   std::unique_lock lock(mutex_);
   const auto whole = [&] { return static_cast<std::int64_t>(whole_.size()); };
-  changed_.wait(lock, [&] { return error_ || whole() > told_ || whole() == content_.last - content_.first; });
+  changed_.wait(lock, [&] { return error_ || whole() > notified_ || whole() == content_.last - content_.first; });
   if (error_) std::rethrow_exception(error_);
-  const std::int64_t more = whole() - told_;
-  told_ = whole();
+  const std::int64_t more = whole() - notified_;
+  notified_ = whole();
   return more;
 }
 

@@ -76,7 +76,7 @@ class SequenceWriter {
   std::condition_variable changed_;
   std::deque<std::int64_t> left_;
   Journal whole_;
-  std::int64_t told_ = 0;
+  std::int64_t notified_ = 0;
   bool stop_ = false;
   std::exception_ptr error_;
   std::vector<std::jthread> threads_;

@@ -125,14 +125,16 @@ class Player {
   Player(const Setting& setting, Trace& trace) : setting_(setting), trace_(trace), scale_(0.5, {0, 0, 0}) {
     vo::LandmarkParams landmark{.scale_sigma = 0};
     landmark.bearing = setting.bearing;
+    vo::MotionParams motion;
+    motion.adaptive = !setting.name.starts_with("paper_");  // as rb2pf_paper and rbpf_paper have it
     vo::FilterPrior prior;
     prior.velocity << 0.2, 0.1, 0.05, 0.1, -0.1, 0.1;
     prior.velocity_covariance.diagonal() << 0.04, 0.05, 0.06, 0.03, 0.04, 0.05;
     if (setting.events.unknown_start) prior.pose.covariance.diagonal() << 0.3, 0.2, 0.1, 0.04, 0.03, 0.05;
     if (setting.filter.sampled == vo::Sampled::nothing) {
-      filter_ = std::make_unique<vo::EkfSlam>(vo::MotionParams{}, setting.filter, landmark, prior);
+      filter_ = std::make_unique<vo::EkfSlam>(motion, setting.filter, landmark, prior);
     } else {
-      auto filter = std::make_unique<vo::ParticleFilter>(vo::MotionParams{}, setting.filter, landmark, prior, 7);
+      auto filter = std::make_unique<vo::ParticleFilter>(motion, setting.filter, landmark, prior, 7);
       particles_ = filter.get();
       filter_ = std::move(filter);
     }

@@ -19,7 +19,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const bool with_alpha : {false, true}) {
     fuzz::HoldText<std::runtime_error>([&] {
       const sim::DecodedImage image = sim::DecodeImage(bytes, with_alpha);
-      small = std::int64_t{image.width} * image.height <= 1 << 20;
+      small = std::int64_t{image.width} * image.height <= 1 << 16;
       if (small)
         sim::test::Sample(sim::Texture("picture", image.width, image.height, image.rgb, image.alpha), {0.5f, 0.5f}, 2);
     });

@@ -50,7 +50,7 @@ std::string CampaignOf(const std::string& systems, const std::string& exposures 
 TEST_F(CampaignTest, ExternalOutcomesAreResults) {
   WriteFile(here_ / "systems.yaml", Systems());
   const std::string text = CampaignOf(
-      "[{name: rb2pf, knows: scenario}, ours, euroc, images, frames_lost, crashes, gives_up, hangs, "
+      "[{name: rb2pf, given: scenario}, ours, euroc, images, frames_lost, crashes, gives_up, hangs, "
       "silent, nonsense, elsewhere]");
   const Outcome outcome = Run(text, "out");
   ASSERT_EQ(outcome.status, 0) << "nothing of that is an error\n" << outcome.err;

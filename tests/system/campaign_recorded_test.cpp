@@ -230,7 +230,7 @@ TEST_F(CampaignRecordedTest, APieceOfFreiburg1) {
       "&& awk '{print $2, 0, 0, 0, 0, 0, 0, 1}' {sequence}/times.txt > {trajectory}\"}\n");
   MustRun(
       "sequences: [{path: " + sequence->string() +
-          ", camera: freiburg1, frames: 40}]\nexternal: systems.yaml\nsystems: [{name: rb2pf, knows: images}, svo]\n",
+          ", camera: freiburg1, frames: 40}]\nexternal: systems.yaml\nsystems: [{name: rb2pf, given: images}, svo]\n",
       "out");
   EXPECT_LT(3 * Ate(Task("out", 0)), Ate(Task("out", 1))) << "against one that stands still";
   EXPECT_THAT(ReadFile(here_ / "out/tasks/00/000001/log.txt"),

@@ -88,7 +88,7 @@ TEST_F(CampaignTest, StereoFindsItsWayInMetres) {
           << h * (c + w) << ' ' << h * (w - c) << '\n';
   }
   WriteFile(turned, poses.str());
-  MustRun(text + "[inertial, flow, stereo, {name: rb2pf, knows: images}, misread, tilted]\n", "imu",
+  MustRun(text + "[inertial, flow, stereo, {name: rb2pf, given: images}, misread, tilted]\n", "imu",
           {"--cache", "out/cache"});
   rows = BySystem(Results("imu"));
   EXPECT_EQ(rows["inertial"]["status"], "ok") << rows["inertial"]["reason"];

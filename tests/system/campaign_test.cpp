@@ -132,12 +132,12 @@ TEST_F(CampaignTest, NumbersAloneAreTheSameNumbers) {
 }
 
 // prior.focal_error changes the odometry's calibration and not the truth: in both commands, in both kinds of worlds,
-// with and without `knows: images`.
+// with and without `given: images`.
 TEST_F(CampaignTest, FocalErrorReachesTheOdometryAlone) {
   const auto text = [](const fs::path& scenario) {
     return "scenarios: [{file: " + scenario.string() + ", set: {time.duration: 0.4 s}}]\n" +
            "vary: [{name: told, key: prior.focal_error, values: [0, 0.3]}]\n"
-           "systems: [rb2pf, {name: alone, system: rb2pf, knows: images}]\n";
+           "systems: [rb2pf, {name: alone, system: rb2pf, given: images}]\n";
   };
   for (const fs::path& scenario : {TinyScenario(), TinyScenario().parent_path() / "points_room.yaml"}) {
     const std::string name = scenario.stem().string();

@@ -34,21 +34,27 @@ void Algorithm1::PredictAgain(const MotionInput& input) {
     Move(std::exchange(correction_, {}));
   }
   step_ = {settings_.motion, since_sampled_, input};
-  PredictParticles(input);  // line 2
+  turn_ = input.turn;
+  PredictParticles();  // line 2
   if (!input.correction) return;
   for (const PoseGaussian& prediction : predictions_)
     correction_.motions.push_back(input.correction->pose * Inverse(prediction.mean));
   correction_.first_landmark = input.correction->first_landmark;
   Move(correction_);
-  PredictParticles(input);
+  PredictParticles();
 }
 
-void Algorithm1::PredictParticles(const MotionInput& input) {
+PoseGaussian Algorithm1::PredictionOf(const Pose& pose, const VelocityFilter::State& velocity,
+                                      const Matrix6& covariance) const {
+  PoseGaussian predicted = PredictPose(step_, pose, velocity, covariance);
+  if (turn_) predicted.mean.q_WC = (pose.q_WC * *turn_).normalized();
+  return predicted;
+}
+
+void Algorithm1::PredictParticles() {
   const Matrix6 covariance = step_.PredictedCovariance(particles_[0].velocity);  // (13), the same for all particles
-  for (std::size_t i = 0; i < particles_.size(); ++i) {
-    predictions_[i] = PredictPose(step_, particles_[i].pose, particles_[i].velocity, covariance);
-    if (input.turn) predictions_[i].mean.q_WC = (particles_[i].pose.q_WC * *input.turn).normalized();
-  }
+  for (std::size_t i = 0; i < particles_.size(); ++i)
+    predictions_[i] = PredictionOf(particles_[i].pose, particles_[i].velocity, covariance);
 }
 
 const FilterAnswer& Algorithm1::Update(std::span<const Match> z) { return z.empty() ? Coast() : SampleStep(z); }
@@ -61,8 +67,8 @@ const FilterAnswer& Algorithm1::SampleStep(std::span<const Match> matches) {
   std::ranges::partition_copy(matches, std::back_inserter(matches_.provisional), std::back_inserter(matches_.acting),
                               &Match::provisional);
   const std::span<const Match> z(matches_.acting);
-  batch_.SetMatches(z);
-  provisional_batch_.SetMatches(matches_.provisional);
+  matches_.batch.SetMatches(z);
+  matches_.provisional_batch.SetMatches(matches_.provisional);
   VelocityFilter::Gain gain = step_.ConditionCovariance(particles_[0].velocity.covariance);
   for (std::size_t i = 0; i < particles_.size(); ++i) {  // line 1
     Particle& particle = particles_[i];
@@ -105,9 +111,9 @@ PoseProposal Algorithm1::ProposePose(std::size_t particle, std::span<const Match
   if (z.empty()) return {prediction, 0, {}};
   const LocalMap map = MapOf(particle);
   if (params.proposal == Proposal::ukf) return ProposeUnscented(prediction, map, z, Spread(params));
-  batch_.Load(map);
+  matches_.batch.Load(map);
   if (params.proposal == Proposal::bootstrap) return {prediction, 0, {}};
-  return Propose(prediction, batch_, params, prediction.mean);
+  return Propose(prediction, matches_.batch, params, prediction.mean);
 }
 
 double Algorithm1::UpdateLandmarks(std::size_t particle, const Pose& sampled, std::span<const Match> z) {
@@ -116,9 +122,10 @@ double Algorithm1::UpdateLandmarks(std::size_t particle, const Pose& sampled, st
   if (z.empty()) return 0;
   double log_likelihood = 0;
   if (params.proposal != Proposal::ukf) {
-    if (params.proposal == Proposal::iterated) batch_.Follow(Minus(sampled, batch_.linearised_at()));
-    log_likelihood = batch_.UpdateLandmarks(sampled, params.proposal == Proposal::ekf ? 1 : params.max_iterations);
-    batch_.Store(landmarks);
+    if (params.proposal == Proposal::iterated) matches_.batch.Follow(Minus(sampled, matches_.batch.linearised_at()));
+    log_likelihood =
+        matches_.batch.UpdateLandmarks(sampled, params.proposal == Proposal::ekf ? 1 : params.max_iterations);
+    matches_.batch.Store(landmarks);
     return log_likelihood;
   }
   for (const Match& match : z) {
@@ -138,9 +145,9 @@ void Algorithm1::UpdateProvisional(std::size_t particle, const Pose& sampled) {
     UpdateLandmarks(particle, sampled, matches_.provisional);
     return;
   }
-  provisional_batch_.Load(MapOf(particle));
-  provisional_batch_.UpdateLandmarks(sampled, params.proposal == Proposal::ekf ? 1 : params.max_iterations);
-  provisional_batch_.Store(particles_[particle].landmarks);
+  matches_.provisional_batch.Load(MapOf(particle));
+  matches_.provisional_batch.UpdateLandmarks(sampled, params.proposal == Proposal::ekf ? 1 : params.max_iterations);
+  matches_.provisional_batch.Store(particles_[particle].landmarks);
 }
 
 const FilterAnswer& Algorithm1::Coast() {
@@ -177,7 +184,14 @@ std::vector<ImagePrediction> Algorithm1::PredictImages(std::span<const int> land
 
 ReferencePath Algorithm1::Reference() const {
   const std::size_t heaviest = particles_.Heaviest();
-  return {predictions_[heaviest], MapOf(heaviest), {}};
+  ReferencePath reference{predictions_[heaviest], MapOf(heaviest), {}};
+  const bool velocity_sampled = settings_.filter.sampled == Sampled::pose_and_velocity;
+  if (velocity_sampled && settings_.motion.adaptive && correction_.motions.empty()) {
+    const Belief& belief = answer_.belief;
+    const VelocityFilter::State velocity{belief.velocity, belief.covariance.bottomRightCorner<6, 6>()};
+    reference.prediction = PredictionOf(particles_[heaviest].pose, velocity, step_.PredictedCovariance(velocity));
+  }
+  return reference;
 }
 
 ParticlePhase::Modes Algorithm1::ModesOf(std::size_t particle) const {

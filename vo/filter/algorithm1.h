@@ -24,7 +24,9 @@ class Algorithm1 final : public ParticlePhase {
   // At the present pose, which is sampled now if the filter coasts.
   void AddLandmarks(std::span<const FirstView> views) override;
   std::vector<ImagePrediction> PredictImages(std::span<const int> landmarks) const override;
-  ReferencePath Reference() const override;                                      // of the heaviest particle
+  // Of the heaviest particle. A sampled velocity has no covariance, which innovations are measured by: with
+  // motion.adaptive the mixture's takes its place, but for a corrected path.
+  ReferencePath Reference() const override;
   const std::vector<PoseGaussian>& predictions() const { return predictions_; }  // (12)(13), of each particle
 
  protected:
@@ -32,7 +34,8 @@ class Algorithm1 final : public ParticlePhase {
   std::vector<Eigen::Matrix3d> PointCovariances(int landmark) const override;
 
  private:
-  void PredictParticles(const MotionInput& input);
+  PoseGaussian PredictionOf(const Pose& pose, const VelocityFilter::State& velocity, const Matrix6& covariance) const;
+  void PredictParticles();
   const FilterAnswer& Coast();
   const FilterAnswer& SampleStep(std::span<const Match> matches);
   // (15)(16) by the proposal of the settings (docs/algorithm.md, sections 3, 3a and 8). The prediction itself without
@@ -45,14 +48,15 @@ class Algorithm1 final : public ParticlePhase {
 
   struct FrameMatches {
     std::vector<Match> acting, provisional;
+    MatchBatch batch, provisional_batch;  // these, and one particle in turn
   };
 
-  double since_sampled_ = 0;  // [s]; 0 when the present pose is sampled
-  VelocityFilter step_;       // from the last sampled pose to the present
+  double since_sampled_ = 0;                // [s]; 0 when the present pose is sampled
+  VelocityFilter step_;                     // from the last sampled pose to the present
+  std::optional<Eigen::Quaterniond> turn_;  // measured, in place of the model's
   std::vector<PoseGaussian> predictions_;
   Correction correction_;  // of this frame's prediction
   FrameMatches matches_;
-  MatchBatch batch_, provisional_batch_;  // these, and one particle in turn
 };
 
 }  // namespace vo

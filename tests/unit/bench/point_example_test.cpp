@@ -4,7 +4,7 @@
 // [example]
 #include "tools/bench/points/point_bench.h"
 
-// Whatever you want to test. This one has seen nothing and says so: at the start, with a metre and a radian of doubt.
+// The filter under test. This one measures nothing: it stays at the start, with a standard deviation of 1 m and 1 rad.
 struct MyFilter {
   vobench::PointEstimate Track(std::int64_t, const std::vector<sim::PointObservation>&) {
     vobench::PointEstimate estimate;

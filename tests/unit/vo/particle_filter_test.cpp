@@ -17,10 +17,10 @@ namespace {
 constexpr int kLandmarks = 30;
 constexpr std::uint64_t kSeed = 4;
 
-vo::ParticleFilter MakeFilter(const vo::FilterParams& params) {
+vo::ParticleFilter MakeFilter(const vo::FilterParams& params, const vo::MotionParams& motion = {}) {
   vo::FilterPrior prior;
   prior.velocity_covariance = 0.04 * vo::Matrix6::Identity();
-  vo::ParticleFilter filter(vo::MotionParams{}, params, vo::LandmarkParams{}, prior, kSeed);
+  vo::ParticleFilter filter(motion, params, vo::LandmarkParams{}, prior, kSeed);
   filter.AddLandmarks(vo_test::WallFirstViews(kLandmarks));
   return filter;
 }
@@ -55,6 +55,26 @@ TEST(ParticleFilter, ChildrenAreTheirAncestors) {
     for (int frame = 2; frame < 6; ++frame) Step(filter, frame);  // in reused memory
     for (const vo::Particle& particle : filter.particles()) EXPECT_EQ(particle.landmarks.size(), kLandmarks);
   }
+}
+
+// Innovations are measured by the covariance of the velocity that the mixture has, also where each particle samples it.
+TEST(ParticleFilter, ReferencePredictionContainsTheSampledVelocity) {
+  const auto first_prediction = [](vo::Sampled sampled, bool adaptive) {
+    vo::FilterParams params = vo_test::SampledAtOnce();
+    params.sampled = sampled;
+    vo::MotionParams motion;
+    motion.adaptive = adaptive;
+    vo::ParticleFilter filter = MakeFilter(params, motion);
+    filter.Predict(1.0 / 30);
+    return filter.Reference().prediction;
+  };
+  const vo::PoseGaussian integrated = first_prediction(vo::Sampled::pose, true);
+  const vo::PoseGaussian sampled = first_prediction(vo::Sampled::pose_and_velocity, true);
+  EXPECT_LT((sampled.covariance - integrated.covariance).norm(), 1e-12 * integrated.covariance.norm());
+  EXPECT_LT(vo::Minus(sampled.mean, integrated.mean).norm(), 1e-12);
+  const vo::PoseGaussian paper = first_prediction(vo::Sampled::pose_and_velocity, false);
+  EXPECT_LT(paper.covariance.trace(), 0.9 * integrated.covariance.trace()) << "of the particle alone";
+  EXPECT_GT(vo::Minus(paper.mean, integrated.mean).norm(), 1e-3);
 }
 
 // Velocity covariance, which the filter computes once for all particles.

@@ -18,7 +18,7 @@ Steps::Steps(const BenchOptions& options, const BenchFile& bench) : options_(opt
   const std::string& system = options.system;
   if (std::ranges::count(SystemNames(), system) > 0) {
     name_ = system;
-    entry_ = fmt::format("{{name: {0}, system: {0}, knows: images}}", system);
+    entry_ = fmt::format("{{name: {0}, system: {0}, given: images}}", system);
     return;
   }
   const bool is_command = system.find("{sequence}") != std::string::npos;

@@ -206,19 +206,19 @@ void CampaignFile::AddImagesAlone() {
   std::vector<Section> sections;
   for (std::size_t i = 0; i < systems_.size(); ++i) {
     const SystemEntry& entry = campaign_.systems[i];
-    enum class Knows { both, images, scenario } knows = Knows::scenario;
-    if (beside_others && !others(entry) && entry.set.empty()) knows = Knows::both;
-    systems_[i].ReadChoice("knows", knows,
-                           {{"both", Knows::both}, {"images", Knows::images}, {"scenario", Knows::scenario}});
-    if (knows != Knows::scenario && others(entry))
-      systems_[i].Reject("knows", "'knows': what is not ours knows what its command is given");
-    if (knows != Knows::scenario) {
+    enum class Given { both, images, scenario } given = Given::scenario;
+    if (beside_others && !others(entry) && entry.set.empty()) given = Given::both;
+    systems_[i].ReadChoice("given", given,
+                           {{"both", Given::both}, {"images", Given::images}, {"scenario", Given::scenario}});
+    if (given != Given::scenario && others(entry))
+      systems_[i].Reject("given", "'given': other systems are given what their entry says");
+    if (given != Given::scenario) {
       SystemEntry& alone = entries.emplace_back(entry);
       if (!alone.name.ends_with(" (images alone)")) alone.name += " (images alone)";
       alone.set.insert(alone.set.begin(), images_alone_.begin(), images_alone_.end());
       sections.push_back(systems_[i]);
     }
-    if (knows == Knows::images) continue;
+    if (given == Given::images) continue;
     entries.push_back(entry);
     sections.push_back(systems_[i]);
   }

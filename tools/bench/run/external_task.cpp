@@ -120,7 +120,7 @@ void MoveToCamera(evaluation::Trajectory& trajectory, const Eigen::Isometry3d& T
 }
 
 // "; a trajectory with all 45 frames is there ..." of a program that was not accepted; empty without one.
-std::string ToldOfWhole(const fs::path& trajectory, const std::vector<std::int64_t>& stamps_ns) {
+std::string NoteOfWhole(const fs::path& trajectory, const std::vector<std::int64_t>& stamps_ns) {
   try {
     if (CountAnswered(evaluation::ReadTrajectory(trajectory), stamps_ns).frames < stamps_ns.size()) return "";
     return fmt::format("; a trajectory with all {} frames is there (`accept_exit: any` counts it)", stamps_ns.size());
@@ -184,7 +184,7 @@ ExternalAnswer RunExternal(const campaign::ExternalSystem& system, const campaig
     throw BadInput(fmt::format("{}: cannot be started (status {}){}", system.name, end.status,
                                LastLine(folder / "log.txt", places)));
   } else if ((end.signal != 0 || end.status != 0) && !(system.accepts_any_exit && fs::exists(trajectory))) {
-    lost(campaign::Status::crashed, how + ToldOfWhole(trajectory, sequence.stamps_ns));
+    lost(campaign::Status::crashed, how + NoteOfWhole(trajectory, sequence.stamps_ns));
   } else if (!fs::exists(trajectory)) {
     lost(campaign::Status::no_answer,
          fmt::format("the program wrote no {} (`trajectory:` names it)", system.trajectory));

@@ -198,12 +198,12 @@ TEST_F(CampaignFileTest, BesideOthersOursKnowsWhatTheyDo) {
   };
   EXPECT_THAT(read("[rb2pf, rbpf]"), ElementsAre(Pair("rb2pf", 0), Pair("rbpf", 0))) << "nobody else is there";
   EXPECT_THAT(read("[rb2pf, mine]"), ElementsAre(Pair("rb2pf (images alone)", 1), Pair("rb2pf", 0), Pair("mine", 0)));
-  EXPECT_THAT(read("[{name: rb2pf, knows: images}, {name: rbpf, knows: scenario}, mine]"),
+  EXPECT_THAT(read("[{name: rb2pf, given: images}, {name: rbpf, given: scenario}, mine]"),
               ElementsAre(Pair("rb2pf (images alone)", 1), Pair("rbpf", 0), Pair("mine", 0)));
   EXPECT_THAT(read("[{name: rb2pf, set: {odometry.filter.particles: 4}}, mine]"),
               ElementsAre(Pair("rb2pf", 1), Pair("mine", 0)))
       << "it says itself what is set";
-  EXPECT_THROW(read("[{name: mine, knows: images}]"), settings::Error);
+  EXPECT_THROW(read("[{name: mine, given: images}]"), settings::Error);
 }
 
 TEST_F(CampaignFileTest, SettingProblemsOnceAndInPlace) {
