@@ -101,10 +101,10 @@ MotionInput AdaptiveAssociation::Aligned(const MotionInput& input, const Eigen::
   aligned.orientation_noise *= kAlignedNoise;
   if (initialising) {
     aligned.position_noise *= kAlignedNoise;
-    return aligned;
+  } else {
+    const double sigma = kAlignedSigma * camera_.width / camera_.fx / motion_.orientation_noise;
+    aligned.orientation_noise = std::max(aligned.orientation_noise, 3 * sigma * sigma / (dt * dt * dt));  // (9)
   }
-  const double sigma = kAlignedSigma * camera_.width / camera_.fx / motion_.orientation_noise;
-  aligned.orientation_noise = std::max(aligned.orientation_noise, 3 * sigma * sigma / (dt * dt * dt));  // (9)
   return aligned;
 }
 
