@@ -23,6 +23,7 @@
 #include "sim/world/labels.h"
 #include "sim/world/mesh_loader.h"
 #include "sim/world/scene.h"
+#include "tools/base/settings/quantity.h"
 
 namespace sim {
 namespace {
@@ -65,6 +66,16 @@ void WarnOfGloss(const Scene& scene, const RenderParams& params, std::vector<std
                       ": metal and gloss are Lambert surfaces of their base colour");
   }
   for (std::string& warning : list.Summed()) warnings.push_back(std::move(warning));
+}
+
+// A principal point at a quarter of the image or more from its middle is more often a size that was changed alone.
+void WarnOfCentre(const CameraParams& c, std::vector<std::string>& warnings) {
+  if (std::abs(c.cx - 0.5 * (c.width - 1)) < 0.25 * c.width && std::abs(c.cy - 0.5 * (c.height - 1)) < 0.25 * c.height)
+    return;
+  const auto text = [](double px) { return settings::FormatNumber(px); };
+  warnings.push_back("camera: the principal point (" + text(c.cx) + ", " + text(c.cy) +
+                     ") px is far from the middle (" + text(0.5 * (c.width - 1)) + ", " + text(0.5 * (c.height - 1)) +
+                     ") px: camera.width and height crop; for another resolution scale fx, fy, cx and cy as well");
 }
 
 // `rays` are of this scene; the rasteriser leaves them.
@@ -158,6 +169,7 @@ struct Simulator::World {
     const auto around = SurroundingsOf(scene, *rays);
     body = MakeMotion(s, s.motion, s.seed, around.get());
     for (const RigCamera& of : AllCameras(s)) {
+      WarnOfCentre(of.camera, warnings);
       cameras.push_back(s.cameras.empty() ? body : Mounted(body, of.T_BC));
       RequireFree(*cameras.back(), LastStamp(s), *around, [&](double t_s) { return of.sensor.IsCovered(t_s); });
     }

@@ -115,6 +115,7 @@ struct ScriptedMotion {
 // A recorded trajectory: sim/motion/recorded.h.
 struct RecordedMotion {
   std::filesystem::path file;  // TUM: timestamp tx ty tz qx qy qz qw
+  std::string place{};         // FILE:LINE:COLUMN in the scenario; empty: none
   double start_time_s = 0.0;
   double averaging_time_s = 0.030;
   enum class Placing { as_recorded, automatic } placing = Placing::as_recorded;
@@ -122,7 +123,7 @@ struct RecordedMotion {
   std::optional<Pose> start_pose;  // the whole motion is moved rigidly so that it starts here; without: as recorded
 };
 
-// But for file and start pose.
+// But for file, place and start pose.
 template <class V>
 void Visit(V& v, RecordedMotion& p) {
   v.Renamed("start", "start_time");

@@ -124,6 +124,8 @@ std::vector<KeyPose> Average(const std::vector<KeyPose>& keys, double average_s)
 
 std::unique_ptr<Trajectory> MakeRecordedTrajectory(const RecordedMotion& motion, double end_s, std::uint64_t seed,
                                                    const Surroundings* around) {
+  if (!motion.place.empty() && !std::filesystem::exists(motion.file))
+    Fail(motion.place, motion.file.string() + ": no such file");
   std::vector<KeyPose> keys = ReadTumTrajectory(motion.file);
   const double length_s = keys.back().t_s;
   constexpr double kRounding_s = 0.5e-9;  // stamps are whole nanoseconds

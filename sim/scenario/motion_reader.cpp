@@ -143,6 +143,7 @@ MotionDescription ReadScripted(Section& section, const MotionNames& names) {
 MotionDescription ReadRecorded(Section& section, const MotionNames& names) {
   RecordedMotion motion;
   motion.file = ReadFile(section, "file", names.folder);
+  motion.place = section.Where("file");
   ReadFields(section, motion);
   section.Allow("start_pose");
   if (section.Has("start_pose")) {

@@ -58,6 +58,7 @@ Light ReadLight(Section& section) {
 MeshDescription ReadMesh(Section& section, const std::filesystem::path& folder) {
   MeshDescription mesh;
   mesh.file = ReadFile(section, "file", folder);
+  mesh.place = section.Where("file");
   ReadFields(section, mesh);
   section.Allow("texture");
   if (section.Has("texture")) mesh.texture = ReadFile(section, "texture", folder);  // resolved only where given

@@ -8,7 +8,8 @@
 #include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
-#include <glm/mat3x3.hpp>
+#include <glm/gtc/matrix_inverse.hpp>
+#include <map>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -60,13 +61,29 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
     }
     files_.Opened(file, stream->FileSize());
     if (LowerExtension(file) == ".dae") return Collada(file);
+    if (LowerExtension(file) == ".stl") return Stl(file);
     return new BoundedStream(std::move(stream));  // Close() deletes it
   }
 
  private:
   Assimp::IOStream* Collada(const fs::path& file) {
     warnings_.clear();  // assimp opens the file several times
-    const std::string text = ColladaForAssimp(base::ReadFile(file).value_or(""), warnings_);
+    return Memory(ColladaForAssimp(base::ReadFile(file).value_or(""), warnings_));
+  }
+
+  // Magics ("COLOR=" in the header) sets the highest bit of a facet's colour where it has the object's; assimp (5.2)
+  // takes it for a colour of its own.
+  Assimp::IOStream* Stl(const fs::path& file) {
+    constexpr std::size_t kHeader = 84, kFacet = 50;
+    std::string bytes = base::ReadFile(file).value_or("");
+    const bool is_of_magics =
+        !bytes.starts_with("solid") && std::string_view(bytes).substr(0, 80).find("COLOR=") != std::string_view::npos;
+    for (std::size_t at = kHeader + kFacet; is_of_magics && at <= bytes.size(); at += kFacet)
+      bytes[at - 1] = static_cast<char>(bytes[at - 1] ^ '\x80');
+    return Memory(bytes);
+  }
+
+  static Assimp::IOStream* Memory(const std::string& text) {
     auto* bytes = new std::uint8_t[text.size() + 1];
     std::ranges::copy(text, bytes);
     return new Assimp::MemoryIOStream(bytes, text.size(), true);  // owns them
@@ -142,8 +159,8 @@ std::vector<To> Copied(const From* values, unsigned count) {
 
 class Converter {
  public:
-  Converter(const aiScene& from, std::string extension, ImportedScene& to)
-      : from_(from), extension_(std::move(extension)), to_(to) {}
+  Converter(const aiScene& from, std::string extension, MeshImport& import)
+      : from_(from), extension_(std::move(extension)), import_(import), to_(import.scene) {}
 
   void Convert() {
     for (unsigned i = 0; i < from_.mNumMaterials; ++i) AppendMaterial(*from_.mMaterials[i]);
@@ -152,9 +169,12 @@ class Converter {
       const auto* bytes = reinterpret_cast<const std::uint8_t*>(texture.pcData);
       to_.pictures.push_back({texture.mWidth, texture.mHeight, {bytes, bytes + BytesOf(texture)}});
     }
-    for (unsigned i = 0; i < from_.mNumMeshes; ++i) AppendMesh(*from_.mMeshes[i]);
+    if (from_.mRootNode != nullptr) Place(*from_.mRootNode, glm::mat4(1));
+    for (unsigned i = 0; i < from_.mNumMeshes; ++i) AppendMesh(i);
     if (from_.mRootNode == nullptr) return;
     AppendNode(*from_.mRootNode, -1);
+    if (extension_ == ".3mf" || extension_ == ".amf")
+      import_.warnings.push_back("its unit is not read: a number is a metre (scale: 0.001 makes it a millimetre)");
     if (extension_ == ".fbx") {
       glm::mat4& root = to_.nodes[0].transform;
       root = ToGlm(FbxToMetres(from_) * from_.mRootNode->mTransformation);
@@ -172,7 +192,39 @@ class Converter {
     for (unsigned i = 0; i < node.mNumChildren; ++i) AppendNode(*node.mChildren[i], index);
   }
 
-  void AppendMesh(const aiMesh& in) {
+  void Place(const aiNode& node, const glm::mat4& parent) {
+    const glm::mat4 to_root = parent * ToGlm(node.mTransformation);
+    to_root_.try_emplace(node.mName.C_Str(), to_root);
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) mesh_to_root_.try_emplace(node.mMeshes[i], to_root);
+    for (unsigned i = 0; i < node.mNumChildren; ++i) Place(*node.mChildren[i], to_root);
+  }
+
+  // Vertices of a skin where its joints are: sum of w N^-1 J B v, with the joint's inverse bind matrix B.
+  void Pose(const aiMesh& in, const glm::mat4& N, ImportedMesh& out) const {
+    std::vector<glm::mat4> sum(in.mNumVertices, glm::mat4(0));
+    std::vector<float> weight(in.mNumVertices, 0);
+    for (unsigned b = 0; b < in.mNumBones; ++b) {
+      const aiBone& bone = *in.mBones[b];
+      const auto J = to_root_.find(bone.mName.C_Str());
+      if (J == to_root_.end()) return;
+      const glm::mat4 M = glm::inverse(N) * J->second * ToGlm(bone.mOffsetMatrix);
+      for (unsigned k = 0; k < bone.mNumWeights; ++k) {
+        const auto& [vertex, w] = bone.mWeights[k];
+        if (vertex >= in.mNumVertices) return;
+        sum[vertex] += w * M;
+        weight[vertex] += w;
+      }
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i) {
+      if (!(weight[i] > 0)) continue;
+      const glm::mat4 A = sum[i] / weight[i];
+      out.positions[i] = A * glm::vec4(out.positions[i], 1);
+      if (!out.normals.empty()) out.normals[i] = glm::inverseTranspose(glm::mat3(A)) * out.normals[i];
+    }
+  }
+
+  void AppendMesh(unsigned index) {
+    const aiMesh& in = *from_.mMeshes[index];
     ImportedMesh& out = to_.meshes.emplace_back();
     out.material = in.mMaterialIndex;
     if ((in.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return;
@@ -180,6 +232,9 @@ class Converter {
     out.positions = Copied<glm::vec3>(in.mVertices, in.mNumVertices);
     out.normals = Copied<glm::vec3>(in.mNormals, in.mNumVertices);
     out.colors = Copied<glm::vec4>(in.mColors[0], in.mNumVertices);
+    if (extension_ == ".amf" && std::ranges::count(out.colors, glm::vec4(0)) == std::ssize(out.colors))
+      out.colors.clear();  // assimp's, of a file without colours
+    if (const auto N = mesh_to_root_.find(index); in.HasBones() && N != mesh_to_root_.end()) Pose(in, N->second, out);
     for (unsigned set = 0; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++set) {
       if (!in.HasTextureCoords(set)) continue;
       out.uvs.resize(set + 1);
@@ -233,6 +288,7 @@ class Converter {
     aiString path;
     if (in.Get(AI_MATKEY_TEXTURE(type, 0), path) != AI_SUCCESS) return map;
     map.picture = path.C_Str();
+    if (map.picture.empty()) import_.warnings.push_back("a texture without a name (RelativeFilename) is left out");
     map.embedded = from_.GetEmbeddedTextureAndIndex(path.C_Str()).second;
     int channel = 0;
     in.Get(AI_MATKEY_UVWSRC(type, 0), channel);
@@ -256,7 +312,10 @@ class Converter {
 
   const aiScene& from_;
   const std::string extension_;
+  MeshImport& import_;
   ImportedScene& to_;
+  std::map<std::string, glm::mat4> to_root_;    // of each node
+  std::map<unsigned, glm::mat4> mesh_to_root_;  // of each mesh's first node
 };
 
 }  // namespace
@@ -283,7 +342,7 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
                                 : "cannot be read: " + reason;
   }
   if (!import.problem.empty()) return;
-  Converter(*scene, LowerExtension(files.mesh()), import.scene).Convert();
+  Converter(*scene, LowerExtension(files.mesh()), import).Convert();
 }
 
 }  // namespace sim

@@ -74,12 +74,24 @@ std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& wa
   bool skips = false;
   const auto append = [&](std::string_view part) {
     for (const char c : part) {
+      if (c == '<') out.erase(out.find_last_not_of(" \t\r\n") + 1);
       skips = c == '>' || (skips && std::isspace(static_cast<unsigned char>(c)) != 0);
       if (!skips || c == '>') out += c;
     }
   };
   std::size_t done = 0;
+  bool has_diffuse = false, has_emission = false;  // of the shader at hand
   ForEachTag(text, [&](std::string_view tag) {
+    has_diffuse = has_diffuse || tag.starts_with("<diffuse");
+    has_emission = has_emission || tag.starts_with("<emission");
+    for (const std::string shader : {"constant", "lambert", "phong", "blinn"}) {
+      if (tag.starts_with("<" + shader)) has_diffuse = has_emission = false;
+      if (!tag.starts_with("</" + shader) || has_diffuse || !has_emission) continue;
+      const auto at = static_cast<std::size_t>(tag.data() - text.data());
+      append(text.substr(done, at - done));
+      append("<diffuse><color>0 0 0 1</color></diffuse>");  // assimp's default is 0.6
+      done = at;
+    }
     const std::string_view name = tag.starts_with("<texture ") ? Attribute(tag, "texcoord") : "";
     if (name.empty()) return;
     const auto at = static_cast<std::size_t>(name.data() - text.data());

@@ -38,8 +38,9 @@ struct MeshDescription {
   std::optional<glm::dvec3> color{};  // linear; with it or a texture, one material stands for all of the file's
   std::filesystem::path texture{};    // times the colour; empty: none
   std::vector<MaterialDescription> materials{};
+  std::string place{};  // FILE:LINE:COLUMN in the scenario; empty: none
 };
-// But for files, name, class and materials.
+// But for files, name, class, materials and place.
 template <class V>
 void Visit(V& v, MeshDescription& p) {
   v("position", p.position, {Unit::length, settings::Range{-1e8, 1e8}, "of the file's origin in W"});

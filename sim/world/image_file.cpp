@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "tools/base/limits/picture.h"
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
@@ -26,17 +27,29 @@ std::uint32_t BigEndian32(Bytes b) {
 
 std::string_view AsChars(Bytes bytes) { return {reinterpret_cast<const char*>(bytes.data()), bytes.size()}; }
 
-// Checks the checksums of a PNG that has its end.
-void CheckSums(Bytes bytes) {
-  for (std::size_t at = kPngSignature.size(); at + 12 <= bytes.size();) {  // length, type, data, checksum
-    const std::size_t length = BigEndian32(bytes.subspan(at));
-    const Bytes type_and_data = bytes.subspan(at + 4, length + 4);
-    if (libdeflate_crc32(0, type_and_data.data(), type_and_data.size()) !=
-        BigEndian32(bytes.subspan(at + 8 + length))) {
-      throw std::runtime_error("damaged PNG: wrong checksum in the chunk at byte " + std::to_string(at));
-    }
-    if (AsChars(type_and_data) == "IEND") return;
-    at += length + 12;
+struct PngChunk {
+  std::size_t at;
+  std::string_view type;
+  Bytes whole, content;  // whole: length, type, content, checksum
+};
+
+// The whole chunks of a PNG, to its end chunk.
+std::vector<PngChunk> PngChunks(Bytes png) {
+  std::vector<PngChunk> chunks;
+  for (std::size_t at = kPngSignature.size(); at + 12 <= png.size(); at += chunks.back().whole.size()) {
+    const std::size_t length = BigEndian32(png.subspan(at));
+    if (length > png.size() - at - 12) break;
+    chunks.push_back({at, AsChars(png.subspan(at + 4, 4)), png.subspan(at, length + 12), png.subspan(at + 8, length)});
+    if (chunks.back().type == "IEND") break;
+  }
+  return chunks;
+}
+
+void CheckSums(Bytes png) {
+  for (const PngChunk& chunk : PngChunks(png)) {
+    const Bytes summed = chunk.whole.subspan(4, chunk.content.size() + 4);
+    if (libdeflate_crc32(0, summed.data(), summed.size()) != BigEndian32(chunk.whole.last(4)))
+      throw std::runtime_error("damaged PNG: wrong checksum in the chunk at byte " + std::to_string(chunk.at));
   }
 }
 
@@ -94,34 +107,40 @@ DecodedImage DecodeTga(Bytes file, bool with_alpha) {
 
 // Removes colour profiles, which are not applied: libpng warns of common ones on the terminal.
 std::vector<std::uint8_t> WithoutProfile(Bytes png) {
-  std::vector<std::uint8_t> out(png.begin(), png.begin() + kPngSignature.size());
-  for (std::size_t at = kPngSignature.size(); at + 12 <= png.size();) {
-    const std::size_t size = std::size_t{BigEndian32(png.subspan(at))} + 12;
-    const Bytes chunk = png.subspan(at, size);
-    if (AsChars(chunk.subspan(4, 4)) != "iCCP") out.insert(out.end(), chunk.begin(), chunk.end());
-    if (AsChars(chunk.subspan(4, 4)) == "IEND") break;
-    at += size;
-  }
+  std::vector<std::uint8_t> out(kPngSignature.begin(), kPngSignature.end());
+  for (const PngChunk& chunk : PngChunks(png))
+    if (chunk.type != "iCCP") out.insert(out.end(), chunk.whole.begin(), chunk.whole.end());
   return out;
 }
 
 // The content of a PNG's first chunk of a type; empty: it has none.
-Bytes PngChunk(Bytes png, std::string_view type) {
-  for (std::size_t at = kPngSignature.size(); at + 12 <= png.size();) {
-    const std::size_t length = BigEndian32(png.subspan(at));
-    if (length > png.size() - at - 12) break;
-    if (AsChars(png.subspan(at + 4, 4)) == type) return png.subspan(at + 8, length);
-    at += length + 12;
-  }
-  return {};
+Bytes ContentOf(Bytes png, std::string_view type) {
+  const std::vector<PngChunk> chunks = PngChunks(png);
+  const auto found = std::ranges::find(chunks, type, &PngChunk::type);
+  return found == chunks.end() ? Bytes() : found->content;
 }
 
 // Where a grey PNG names one grey as transparent, which OpenCV ignores, the alpha of its pixels.
 cv::Mat AlphaOfGreyKey(Bytes png, const cv::Mat& grey) {
-  const Bytes header = PngChunk(png, "IHDR"), key = PngChunk(png, "tRNS");
+  const Bytes header = ContentOf(png, "IHDR"), key = ContentOf(png, "tRNS");
   if (grey.empty() || header.size() < 13 || header[9] != 0 || key.size() < 2 || grey.channels() != 1) return {};
   const int bits = header[8], value = key[0] << 8 | key[1];
   return grey != (bits < 8 ? value * 255 / ((1 << bits) - 1) : value);
+}
+
+// Product of the factors by which a Radiance picture's values were multiplied.
+double ExposureOf(std::string_view file) {
+  constexpr std::string_view kKey = "EXPOSURE=";
+  double exposure = 1;
+  for (std::size_t end = file.find('\n'); end != std::string_view::npos && end > 0; end = file.find('\n')) {
+    const std::string_view line = file.substr(0, end);
+    const auto factor = line.starts_with(kKey)
+                            ? base::ParseNumber(base::SplitWords(line.substr(kKey.size())).at(0).text)
+                            : std::nullopt;
+    if (factor && *factor > 0) exposure *= *factor;
+    file.remove_prefix(end + 1);
+  }
+  return exposure;
 }
 
 }  // namespace
@@ -145,6 +164,7 @@ cv::Mat DecodeMatrix(Bytes bytes, int flags) {
     throw std::runtime_error("cannot be decoded: " + error.err);
   }
   if (picture.empty()) throw std::runtime_error("not a picture that can be decoded");
+  if (picture.depth() == CV_32F && AsChars(bytes).starts_with("#?")) picture /= ExposureOf(AsChars(bytes));
   return picture;
 }
 

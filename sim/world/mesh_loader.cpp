@@ -306,7 +306,8 @@ std::vector<std::string> WarningList::Summed() const {
 
 void AppendMeshFile(const MeshDescription& description, WorldLoading& loading) {
   const std::string extension = LowerExtension(description.file);
-  const MeshFile file{description.file, extension, extension == ".gltf" || extension == ".glb", loading.scene, loading};
+  const MeshFile file{description.file, extension, extension == ".gltf" || extension == ".glb",
+                      loading.scene,    loading,   description.place};
   FileReader(file, description).Read();
 }
 

@@ -21,12 +21,15 @@ struct MeshFile {
   bool is_gltf;
   Scene& scene;
   WorldLoading& loading;
+  std::string place;  // in the scenario, for problems
 
   // who: the subject, which varies; what: the text common to a kind.
   void Warn(const std::string& who, const std::string& what) const {
     loading.warnings.Add(path.string() + ": " + who, what);
   }
-  void Problem(const std::string& what) const { loading.problems.push_back(path.string() + ": " + what); }
+  void Problem(const std::string& what) const {
+    loading.problems.push_back((place.empty() ? "" : place + ": ") + path.string() + ": " + what);
+  }
 };
 
 struct MeshMaterial {

@@ -233,12 +233,16 @@ class PlyReader {
     const int list = e.Find({"vertex_indices", "vertex_index"}), wedge = e.Find({"texcoord"}),
               number = e.Find({"texnumber"});
     const auto color = vertex_.color ? std::nullopt : ColorPlaces(e);
+    if (e.Find({"material_index"}) >= 0)
+      import_.warnings.push_back("materials of its faces (material_index) are not read: they are white");
+    if (e.Find({"color"}) >= 0) import_.warnings.push_back("colours of its faces' corners (color) are not read");
     if (list < 0) return ForEachRow(e, [](const Row&) {});
     ForEachRow(e, [&](const Row& row) {
       const std::vector<double>& vertices = row[static_cast<std::size_t>(list)];
       if (vertices.size() < 3) return;
       const std::vector<double> none, &uvs = wedge < 0 ? none : row[static_cast<std::size_t>(wedge)];
-      const bool has_wedge = uvs.size() >= 2 * vertices.size();
+      const std::size_t each = uvs.size() / vertices.size();  // u v, or u v w
+      const bool has_wedge = each >= 2 && uvs.size() == each * vertices.size();
       const std::vector<double>& texture = number < 0 ? none : row[static_cast<std::size_t>(number)];
       if (color) AppendColor(e, *color, row);
       // Faces with and without coordinates of their own are parts, as are those of different textures.
@@ -248,7 +252,7 @@ class PlyReader {
       for (std::size_t i = 0; i < vertices.size(); ++i) {
         Corner& corner = part.corners.emplace_back(At(vertices[i]));
         if (has_wedge) {
-          corner[1] = UvIndex(static_cast<float>(uvs[2 * i]), static_cast<float>(uvs[2 * i + 1]));
+          corner[1] = UvIndex(static_cast<float>(uvs[each * i]), static_cast<float>(uvs[each * i + 1]));
         }
         if (color) corner[3] = static_cast<std::int32_t>(pools_.colors.size()) - 1;
       }

@@ -107,7 +107,9 @@ TEST_F(ErrorsTest, CorruptMesh) {
   Fails({"run", "scenes/tiny.yaml", "-o", "out"}, 2, mesh.filename().string());
   Fails({"check", "scenes/tiny.yaml"}, 2, mesh.filename().string());
   fs::remove(mesh);
-  Fails({"render", "scenes/tiny.yaml", "-o", "out"}, 2, mesh.filename().string());
+  Fails({"render", "scenes/tiny.yaml", "-o", "out"}, 2, "scenes/room/room.obj: no such file");
+  const Outcome gone = RunVobench({"check", "scenes/tiny.yaml"}, here_.path());
+  EXPECT_THAT(gone.err, StartsWith("vobench: scenes/tiny.yaml:")) << "with the place of the entry";
 }
 
 TEST_F(ErrorsTest, MissingTexture) {
@@ -132,6 +134,8 @@ TEST_F(ErrorsTest, NanInATrajectory) {
   Fails({"render", TinyScenario().string(), "-o", "out", "--set", recorded, "--set", "time.duration=0.1 s"}, 2,
         "bad.txt:2");
   Fails({"check", TinyScenario().string(), "--set", recorded, "--set", "time.duration=0.1 s"}, 2, "bad.txt:2");
+  Fails({"check", TinyScenario().string(), "--set", "trajectory={type: recorded, file: gone.txt}"}, 2,
+        "--set trajectory: ");
 }
 
 // Undetermined quantities: two pairs determine no alignment, a truth at rest no scale.
@@ -205,6 +209,43 @@ TEST_F(ErrorsTest, BadUsage) {
     EXPECT_FALSE(outcome.err.empty()) << testing::PrintToString(arguments);
     EXPECT_TRUE(Tree(here_.path()).empty());
   }
+}
+
+TEST_F(ErrorsTest, TheOtherKindOfFileOrFolderIsNamed) {
+  const std::string tiny = TinyScenario().string(), points = (TinyScenario().parent_path() / "campaign_points.yaml");
+  Fails({"check", points}, 2, points + ": is a campaign's file: `vobench campaign");
+  Fails({"campaign", tiny, "-o", "out"}, 2, tiny + ": is a scenario: `vobench run");
+  WriteFile(here_ / "rig" / "rig.yaml", "cameras: []");
+  WriteFile(here_ / "moving.txt", "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 1 1 0 0 0 0 1\n");
+  Fails({"track", "rig", "-o", "out", "--camera", "icl"}, 2,
+        "rig: is the folder of a rig (rig.yaml); name that of one");
+  Fails({"evaluate", "moving.txt", "--truth", "rig"}, 2, "or rig/groundtruth.txt for poses of the body");
+  Fails({"evaluate", "rig", "--truth", "moving.txt"}, 2, "rig: has no estimate.txt: ESTIMATE is");
+  WriteFile(here_ / "campaign" / "campaign.json", "{}");
+  Fails({"report", "campaign"}, 2, "campaign: is a campaign's folder");
+  Fails({"evaluate", "campaign", "--truth", "moving.txt"}, 2, "campaign: is a campaign's folder");
+}
+
+TEST_F(ErrorsTest, UnknownWordsAreAnsweredByTheNearest) {
+  const std::string tiny = TinyScenario().string();
+  Fails({"rendr", tiny}, 2, "there is no command 'rendr'; did you mean 'render'?");
+  Fails({"run", tiny, "--out", "x"}, 2, "`run` has no option --out; did you mean '--output'?");
+  Fails({"run", tiny, "--seed", "1.5"}, 2, "'1.5' is no whole number from 0");
+  Fails({"render", tiny, "-o", "x", "--seed", "99999999999999999999"}, 2, "'99999999999999999999' is no whole number");
+  Fails({"run", tiny, "--seed", "18446744073709551615", "--runs", "2"}, 2, "leaves no seeds for 2 runs");
+  Fails({"campaign", "c.yaml", "-o", "x", "--timeout", "0"}, 2, "'0' is no number above 0");
+}
+
+TEST_F(ErrorsTest, CheckWarnsOfPicturesThatShowNothingAndOfACentreThatIsFarOff) {
+  const std::string tiny = TinyScenario().string();
+  Fails({"check", tiny, "--set", "camera.cx=5000"}, 2, "cx");
+  const auto warning = [&](const std::string& set) {
+    return RunVobench({"check", tiny, "--set", set}, here_.path()).err;
+  };
+  EXPECT_THAT(warning("camera.width=640"), HasSubstr("px is far from the middle (319.5, "));
+  EXPECT_THAT(warning("world.lights=[]"), HasSubstr("the first frame is nearly black"));
+  EXPECT_THAT(warning("sensor.gain=1000"), HasSubstr("the first frame is nearly white"));
+  EXPECT_EQ(warning("seed=1"), "");
 }
 
 TEST_F(ErrorsTest, HelpAndVersionSucceed) {

@@ -34,7 +34,45 @@ std::string NameOf(std::string_view cell) {
       name += '_';
   }
   if (name.ends_with('_')) name.pop_back();
-  return name.ends_with("_m") ? name.substr(0, name.size() - 2) : name;
+  if (name.ends_with("_m")) name.resize(name.size() - 2);
+  for (const auto& [other, ours] : {std::pair{"qr", "qw"}, {"qs", "qw"}, {"qi", "qx"}, {"qj", "qy"}, {"qk", "qz"}})
+    if (name == other) return ours;
+  return name;
+}
+
+// "pose(x y z)" as "pose_x pose_y pose_z": axes in brackets are names of columns.
+std::string WithNamedAxes(std::string_view line) {
+  constexpr std::string_view kSeparators = " ,;";
+  std::string out;
+  for (std::size_t at = 0; at < line.size(); ++at) {
+    const std::size_t end = line.find(')', at);
+    const std::string_view inner =
+        line[at] == '(' && end != std::string_view::npos ? line.substr(at + 1, end - at - 1) : "";
+    std::size_t axes = 0;
+    bool is_list = true;
+    for (std::size_t i = 0; i < inner.size() && is_list; ++i) {
+      const bool is_axis = inner[i] >= 'w' && inner[i] <= 'z';
+      axes += is_axis;
+      is_list = kSeparators.find(inner[i]) != std::string_view::npos ||
+                (is_axis && (i == 0 || kSeparators.find(inner[i - 1]) != std::string_view::npos));
+    }
+    if (!is_list || axes < 3) {
+      out += line[at];
+      continue;
+    }
+    out.erase(out.find_last_not_of(' ') + 1);
+    std::size_t begin = out.size();
+    while (begin > 0 && (IsLetter(out[begin - 1]) || IsDigit(out[begin - 1]) || out[begin - 1] == '_')) --begin;
+    const std::string name = out.substr(begin);
+    out.erase(begin);
+    for (const char c : inner) out += c >= 'w' && c <= 'z' ? name + '_' + c : std::string(1, c);
+    at = end;
+  }
+  return out;
+}
+
+bool IsOfMotion(std::string_view stem) {
+  return HasAny(stem, {"twist", "vel", "speed", "acc", "gyr", "bias", "omega", "cov", "sigma", "std", "err"});
 }
 
 // Of a name that ends in x, y, z or w: 1 ... 3 of the position, 4 ... 7 of the quaternion; nothing: neither.
@@ -47,8 +85,7 @@ std::optional<std::size_t> AxisOf(const std::string& name) {
   const std::string last = stem.size() + 1 == name.size() ? stem.substr(stem.rfind('_') + 1) : "";  // qx, gt_qx
   static constexpr std::string_view kShort[] = {"", "t", "p", "q", "o", "pos", "rot", "quat", "trans", "loc"};
   if (std::ranges::find(kShort, last) == std::end(kShort)) return std::nullopt;
-  if (HasAny(stem, {"twist", "vel", "speed", "acc", "gyr", "bias", "omega", "cov", "sigma", "std", "err"}))
-    return std::nullopt;
+  if (IsOfMotion(stem)) return std::nullopt;
   if (HasAny(stem, {"q", "orient", "rot"}) || last == "o" || (stem.empty() && axis == 3)) return 4 + axis;
   const bool is_position = axis < 3 && (stem.empty() || last == "t" || HasAny(stem, {"p", "trans", "loc"}));
   return is_position ? std::optional(1 + axis) : std::nullopt;
@@ -65,15 +102,20 @@ int RankAsStamp(const std::string& name) {
   return HasAny(name, {"stamp"}) ? 3 : name == "t" || HasAny(name, {"time"}) ? 2 : 0;
 }
 
-// Of the unit that a column's name states, in powers of ten; 0: none, or seconds.
+// Of the unit that a column's name states last, in powers of ten; 0: none, or seconds.
 int ExponentOf(std::string_view cell) {
-  std::string text(cell);
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  for (const auto& [unit, exponent] : {std::pair{"n", -9}, {"u", -6}, {"m", -3}}) {
-    const std::string s = std::string(unit) + "s";
-    if (HasAny(text, {"[" + s + "]", "(" + s + ")"}) || EndsInAny(text, {"_" + s, "_" + s + "ec", "_" + s + "ecs"}))
-      return exponent;
+  std::string word;
+  for (std::size_t i = 0; i < cell.size(); ++i) {
+    const bool is_mu = cell.substr(i).starts_with("\xc2\xb5") || cell.substr(i).starts_with("\xce\xbc");
+    if (!is_mu && !IsLetter(cell[i])) continue;
+    if (i == 0 || !(IsLetter(cell[i - 1]) || word == "u")) word.clear();
+    word += is_mu ? 'u' : static_cast<char>(std::tolower(static_cast<unsigned char>(cell[i])));
+    i += is_mu;
   }
+  for (const auto& [prefix, exponent] :
+       {std::pair{"nano", -9}, {"n", -9}, {"micro", -6}, {"u", -6}, {"milli", -3}, {"m", -3}})
+    for (const char* second : {"s", "sec", "secs", "second", "seconds"})
+      if (word == std::string(prefix) + second) return exponent;
   return 0;
 }
 
@@ -85,17 +127,44 @@ struct Named {
   }
 };
 
+// What precedes x, y, z and, `with_w` or not, w in four or three of the names.
+std::vector<std::string> StemsOf(std::span<const std::string> names, bool with_w) {
+  const auto has = [&](const std::string& name) { return std::ranges::find(names, name) != names.end(); };
+  std::vector<std::string> stems;
+  for (const std::string& name : names) {
+    if (!name.ends_with('x')) continue;
+    const std::string stem = name.substr(0, name.size() - 1);
+    if (!stem.empty() && !IsOfMotion(stem) && has(stem + 'y') && has(stem + 'z') && has(stem + 'w') == with_w)
+      stems.push_back(stem);
+  }
+  return stems;
+}
+
 Named Assign(std::span<const std::string> names) {
   Named found;
   int rank = 0;
+  const std::vector<std::string> quaternions = StemsOf(names, true);
+  const auto axis_of = [&](const std::string& name) {
+    for (const std::string& stem : quaternions)
+      if (name.size() == stem.size() + 1 && name.starts_with(stem) && name.back() >= 'w' && name.back() <= 'z')
+        return std::optional(name.back() == 'w' ? kW : 4 + static_cast<std::size_t>(name.back() - 'x'));
+    return AxisOf(name);
+  };
   const bool split_stamp = std::ranges::any_of(names, IsNanoseconds);
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (const int r = RankAsStamp(names[i]); r > rank && !(r == 1 && split_stamp)) {
       found.columns[kStamp] = i;
       rank = r;
-    } else if (const auto axis = AxisOf(names[i])) {
+    } else if (const auto axis = axis_of(names[i])) {
       found.has_two_poses = found.has_two_poses || found.columns[*axis];
       if (!found.columns[*axis]) found.columns[*axis] = i;
+    }
+  }
+  if (found.columns[1] || found.columns[2] || found.columns[3]) return found;
+  if (const std::vector<std::string> others = StemsOf(names, false); others.size() == 1) {  // such as cam_x
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto at = std::ranges::find(names, others[0] + static_cast<char>('x' + axis));
+      found.columns[1 + axis] = static_cast<std::size_t>(at - names.begin());
     }
   }
   return found;
@@ -126,7 +195,8 @@ std::vector<Word> Cells(std::string_view line) {
   return SplitWords(line);
 }
 
-std::optional<PoseHeader> ReadPoseHeader(std::string_view line, std::string& problem) {
+std::optional<PoseHeader> ReadPoseHeader(std::string_view written, std::string& problem) {
+  const std::string line = WithNamedAxes(written);
   const std::vector<Word> cells = Cells(line);
   const auto count = [&](char separator) { return std::ranges::count(line, separator) + 1; };
   const bool is_prose = std::max(count(','), count(';')) < static_cast<std::ptrdiff_t>(PoseHeader::kPose);
@@ -154,14 +224,15 @@ std::optional<PoseHeader> ReadPoseHeader(std::string_view line, std::string& pro
   }
   if (!found.is_complete() || found.has_two_poses) {
     const auto has = [&](std::size_t i) { return found.columns[i].has_value(); };
-    const bool has_w = has(kW) || std::ranges::find(names, "q0") != names.end();
+    const auto is_w = [](const std::string& name) { return name == "q0" || name.ends_with("wxyz"); };
+    const bool has_w = has(kW) || std::ranges::any_of(names, is_w);
     std::string missing;
     for (std::size_t i = 0; i < PoseHeader::kPose; ++i)
       if (!has(i)) missing += (missing.empty() ? "" : ", ") + std::string(kNames[i]);
     const std::string all = ": name the columns timestamp tx ty tz qx qy qz qw, in their order";
     if (found.is_complete())
       problem = "the header names two poses a line: keep one";
-    else if (has_w && has(1) && has(2) && has(3))
+    else if (has_w && (is_prose ? has(1) && has(2) && has(3) : has(1) || has(4)))
       problem = "the header names no column for " + missing + all;
     return std::nullopt;
   }

@@ -75,7 +75,7 @@ std::string Usage(const CLI::App& command) {
   if (command.get_parent() == nullptr) return "vobench COMMAND [OPTIONS]";
   std::string usage = "vobench " + command.get_name(), required;
   for (const OptionRow& row : RowsOf(command)) {
-    if (row.positional) usage += " " + row.names.front();
+    if (row.positional) usage += row.required ? " " + row.names.front() : " [" + row.names.front() + "]";
     if (row.required && !row.positional) required += " " + row.names.front() + " " + row.argument;
   }
   return usage + required + " [OPTIONS]";

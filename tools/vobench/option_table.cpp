@@ -1,8 +1,11 @@
 #include "tools/vobench/option_table.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -10,6 +13,8 @@
 #include <thread>
 #include <vector>
 
+#include "tools/base/settings/state.h"
+#include "tools/base/text.h"
 #include "tools/bench/systems/systems.h"
 #include "tools/bench/text.h"
 #include "tools/vobench/help_text.h"
@@ -46,6 +51,24 @@ CLI::Option* Add(CLI::App& command, const std::string& synopsis, T& value, const
 
 // A check that leaves the argument's name in the help as it is.
 CLI::Validator Plain(const CLI::Validator& check) { return check.description(""); }
+
+// An argument of digits alone, which fits the integer it is parsed to.
+CLI::Validator WholeNumber() {
+  return {[](std::string& text) {
+            std::uint64_t value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            if (error == std::errc() && end == text.data() + text.size()) return std::string();
+            return "'" + text + "' is no whole number from 0 to 18446744073709551615";
+          },
+          ""};
+}
+
+CLI::Validator PositiveNumber() {
+  return {[](std::string& text) {
+            return base::ParseNumber(text).value_or(0) > 0 ? "" : "'" + text + "' is no number above 0";
+          },
+          ""};
+}
 
 void AddSet(CLI::App& command, Overrides& overrides, const std::string& example) {
   const auto parse = [&overrides](const std::vector<std::string>& all) {
@@ -92,13 +115,13 @@ void AddJobs(CLI::App& command, int& jobs, const std::string& help) {
 
 template <class T>
 CLI::Option* AddSeed(CLI::App& command, T& seed, const std::string& help) {
-  return Add(command, "--seed N", seed, help)->check(Plain(CLI::NonNegativeNumber));
+  return Add(command, "--seed N", seed, help)->check(WholeNumber());
 }
 
 void AddRender(OptionTable& table) {
   const auto [command, render] =
       AddCommand<RenderOptions>(table, "render", "Render a scenario into a sequence: images with exact truth",
-                                "vobench render scenes/room.yaml -o room --frames 0:30 --set sensor.exposure='5 ms'");
+                                "vobench render scenes/room.yaml -o room --frames 0:30 --truth depth,flow");
   Add(command, "SCENARIO", render.scenario, "Scenario file (scenes/*.yaml)")->required();
   Add(command, "-o,--output SEQ", render.output, "Sequence folder to make")->required();
   const auto parse_frames = [&frames = render.frames](const std::string& text) {
@@ -128,7 +151,7 @@ void AddRender(OptionTable& table) {
   AddEngine(command, render.overrides);
   AddMissingTextures(command, render.overrides);
   AddJobs(command, render.jobs, "Threads; the results do not depend on it");
-  AddSet(command, render.overrides, "camera.width=320");
+  AddSet(command, render.overrides, "sensor.exposure='5 ms'");
 }
 
 void AddTrack(OptionTable& table) {
@@ -206,6 +229,7 @@ void AddRun(OptionTable& table) {
       "As --verdict, and exit status 3 where a system is not");
   AddMap(command, run.map);
   AddEngine(command, run.overrides);
+  AddMissingTextures(command, run.overrides);
   AddJobs(command, run.jobs, "Threads; the results do not depend on it");
   AddSet(command, run.overrides, "odometry.filter.particles=16");
 }
@@ -220,7 +244,7 @@ CLI::Option* AddPlace(CLI::App& command, CampaignOptions& campaign) {
       "Of each process, such as 2GB (default: an equal part of what is left)")
       ->transform(Plain(CLI::AsSizeValue(false)));
   Add(command, "--timeout S", campaign.timeout_s, "Seconds that a task may take (default: as long as it likes)")
-      ->check(Plain(CLI::PositiveNumber));
+      ->check(PositiveNumber());
   Add(command, "--partition NAME", campaign.partition, "Of Slurm");
   Add(command, "--time TIME", campaign.time, "Of one job of Slurm, such as 2:00:00");
   Add(command, "--tasks-per-job N", campaign.tasks_per_job, "Of Slurm: tasks that one element of the array does")
@@ -244,15 +268,13 @@ void AddCampaign(OptionTable& table) {
                    "Results that the file as it is now would not give may go; else an error");
   CLI::Option* task =
       Add(command, "--task K", campaign.task, "Run this one task again, and say whether it comes out the same")
-          ->check(Plain(CLI::NonNegativeNumber))
+          ->check(WholeNumber())
           ->excludes(where);
   CLI::Option* list =
       Add(command, "--list FILE", campaign.list, "Run the tasks in line --part of this file, as job arrays do")
           ->excludes(task)
           ->excludes(where);
-  Add(command, "--part N", campaign.part, "A line of --list; the first is 0")
-      ->check(Plain(CLI::NonNegativeNumber))
-      ->needs(list);
+  Add(command, "--part N", campaign.part, "A line of --list; the first is 0")->check(WholeNumber())->needs(list);
 }
 
 void AddBench(OptionTable& table) {
@@ -284,7 +306,7 @@ void AddCheck(OptionTable& table) {
   Add(command, "SCENARIO", check.scenario, "Scenario file (scenes/*.yaml)")->required();
   Add(command, "--path FILE", check.path, "Also write the camera's path, every 10 ms, in TUM's format");
   AddMissingTextures(command, check.overrides);
-  AddSet(command, check.overrides, "camera.width=320");
+  AddSet(command, check.overrides, "sensor.exposure='5 ms'");
 }
 
 void AddSettings(OptionTable& table) {
@@ -347,6 +369,24 @@ void AddReport(OptionTable& table) {
   Add(command, "OUT", report.output, "Result folder")->required();
 }
 
+// A command or option that there is not, with the nearest one; empty: all are known.
+std::string UnknownWord(const CLI::App& app, const std::vector<std::string>& arguments) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : CommandsOf(app)) names.push_back(command->get_name());
+  if (arguments.empty() || arguments[0].starts_with('-')) return "";
+  if (std::ranges::count(names, arguments[0]) == 0)
+    return "there is no command '" + arguments[0] + "'" + settings::Suggest(arguments[0], names);
+  names.clear();
+  const CLI::App& command = *app.get_subcommand(arguments[0]);
+  for (const OptionRow& row : RowsOf(command)) std::ranges::copy(row.names, std::back_inserter(names));
+  for (const std::string& argument : arguments) {
+    const std::string option = argument.substr(0, argument.find('='));
+    if (option.starts_with("--") && option != "--" && std::ranges::count(names, option) == 0)
+      return "`" + arguments[0] + "` has no option " + option + settings::Suggest(option, names);
+  }
+  return "";
+}
+
 // The command line, quoted for reuse.
 std::string CommandLine(int argc, char** argv) {
   std::string line = "vobench";
@@ -383,6 +423,10 @@ std::variant<Command, int> ParseArguments(int argc, char** argv) {
   try {
     table.app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    if (const std::string unknown = UnknownWord(table.app, {argv + 1, argv + argc}); !unknown.empty()) {
+      std::fprintf(stderr, "vobench: %s\n", unknown.c_str());
+      return 2;
+    }
     return table.app.exit(error) == 0 ? 0 : 2;
   }
   const auto record = [&](auto& options) {

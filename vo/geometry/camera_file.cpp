@@ -127,13 +127,15 @@ Camera CameraOfText(std::string_view text, const std::filesystem::path& file) {
   const auto count = [&](const std::vector<std::string>& keys) {
     return std::ranges::count_if(keys, [&](const std::string& key) { return root.Has(key); });
   };
-  if (root.Has("cam0")) {
-    ReadEuroc(root.Child("cam0"), "distortion_coeffs", camera);
+  constexpr std::array kOfAChain = {"cam0", "cam1", "cam2", "cam3", "cam4", "cam5", "cam6", "cam7"};
+  const auto first = std::ranges::find_if(kOfAChain, [&](const char* key) { return root.Has(key); });
+  if (first != kOfAChain.end()) {
+    ReadEuroc(root.Child(*first), "distortion_coeffs", camera);
     root.IgnoreRest();  // other cameras
   } else if (ReadSlamCamera(root, camera)) {
     // has read it
   } else if (root.Has("intrinsics") && count({"camera_model", "distortion_model", "resolution"}) > 0) {
-    ReadEuroc(root, "distortion_coefficients", camera);
+    ReadEuroc(root, root.Has("distortion_coeffs") ? "distortion_coeffs" : "distortion_coefficients", camera);
   } else if (count(kMatrixKeys) + count({"image_width"}) > 0) {
     ReadOpenCv(root, camera);
   } else if (count({"width", "height", "fx", "fy", "cx", "cy"}) > (is_json ? 5 : 1)) {  // JSON may be any program's

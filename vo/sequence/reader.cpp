@@ -132,8 +132,17 @@ cv::Mat ReadImage(const fs::path& file) {
 
 }  // namespace
 
+std::string RigProblem(const fs::path& folder) {
+  if (!fs::exists(folder / "rig.yaml") || fs::exists(folder / "mav0")) return "";
+  for (const char* list : {"rgb.txt", "associations.txt"})
+    if (fs::exists(folder / list)) return "";
+  return folder.string() + ": is the folder of a rig (rig.yaml); name that of one camera, such as " +
+         (folder / "cam0").string();
+}
+
 SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera) {
   if (!fs::is_directory(folder)) throw std::runtime_error(folder.string() + ": no such folder");
+  if (const std::string problem = RigProblem(folder); !problem.empty()) throw std::runtime_error(problem);
   const ListFormat format = FormatOf(folder, camera);
   const fs::path& list = format.list;
   std::ifstream in(list);

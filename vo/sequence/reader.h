@@ -5,11 +5,15 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "vo/base/source.h"
 
 namespace vo {
+
+// Problem of a rig's folder where a camera's sequence is expected; empty: it is none.
+std::string RigProblem(const std::filesystem::path& folder);
 
 class SequenceReader : public FrameSource {
  public:

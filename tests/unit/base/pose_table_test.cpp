@@ -48,6 +48,15 @@ TEST(PoseTable, TakesTheOrderOfItsHeader) {
         "# timestamp x y z w i j k\n7.5 1 2 3 9 4 5 6",
         "timestamp,speed_x,speed_y,speed_z,x,y,z,qx,qy,qz,qw\n7.5,8,8,8,1,2,3,4,5,6,9",
         "timestamp,x,y,z,orientation_yaw,orientation_w,orientation_x,orientation_y,orientation_z\n7.5,1,2,3,8,9,4,5,6",
+        "timestamp,tx,ty,tz,rw,rx,ry,rz\n7.5,1,2,3,9,4,5,6",
+        "frame_time,cam_x,cam_y,cam_z,cam_qw,cam_qx,cam_qy,cam_qz\n7.5,1,2,3,9,4,5,6",
+        "time x y z qr qi qj qk\n7.5 1 2 3 9 4 5 6",
+        "# timestamp [s], position x [m], position y [m], position z [m], attitude w, attitude x, attitude y, attitude "
+        "z\n7.5, 1, 2, 3, 9, 4, 5, 6",
+        "t,T_W_B.x,T_W_B.y,T_W_B.z,R_W_B.w,R_W_B.x,R_W_B.y,R_W_B.z\n7.5,1,2,3,9,4,5,6",
+        "# timestamp position(x y z) quaternion(w x y z)\n7.5 1 2 3 9 4 5 6",
+        "# timestamp, position (x, y, z), orientation quaternion (w, x, y, z)\n7.5, 1, 2, 3, 9, 4, 5, 6",
+        "timestamp,vel_x,vel_y,vel_z,base_x,base_y,base_z,qs,qx,qy,qz\n7.5,8,8,8,1,2,3,9,4,5,6",
         "__time,/vo/orientation/w,/vo/orientation/x,/vo/orientation/y,/vo/orientation/z,/vo/position/x,/vo/position/y,"
         "/vo/position/z\n7.5,9,4,5,6,1,2,3",
         ",timestamp,tx,ty,tz,qw,qx,qy,qz\n0,7.5,1,2,3,9,4,5,6",
@@ -72,6 +81,8 @@ TEST(PoseTable, NanosecondsWhereTheTableHasThem) {
         "field.transform.translation.z,field.transform.rotation.x,field.transform.rotation.y,field.transform.rotation."
         "z,"
         "field.transform.rotation.w\n80,75,,1,2,3,4,5,6,9",
+        "#timestamp [nsec],tx,ty,tz,qx,qy,qz,qw\n75,1,2,3,4,5,6,9",
+        "time_nanoseconds tx ty tz qx qy qz qw\n75 1 2 3 4 5 6 9",
         "timestamp_ns tx ty tz qx qy qz qw\n75 1 2 3 4 5 6 9", "75,1,2,3,9,4,5,6,0,0,0,0,0,0,0,0,0"}) {
     EXPECT_THAT(LastOf(text), ElementsAre("75e-9", "1", "2", "3", "4", "5", "6", "9")) << text;
   }
@@ -79,6 +90,10 @@ TEST(PoseTable, NanosecondsWhereTheTableHasThem) {
   EXPECT_EQ(LastOf("#t [ns] x y z qx qy qz qw\n1403636580838555648.000000 1 2 3 4 5 6 9").at(0),
             "1403636580838555648.000000e-9");
   EXPECT_EQ(LastOf("#t [ms],x,y,z,qw,qx,qy,qz\n12.5,1,2,3,9,4,5,6").at(0), "12.5e-3");
+  for (const std::string unit : {"time (milliseconds)", "t [msec]", "t_millisecs"})
+    EXPECT_EQ(LastOf(unit + ",x,y,z,qx,qy,qz,qw\n12.5,1,2,3,4,5,6,9").at(0), "12.5e-3") << unit;
+  for (const std::string unit : {"#t [\xc2\xb5s]", "t (\xce\xbcs)", "t [usec]", "t_microseconds"})
+    EXPECT_EQ(LastOf(unit + ",x,y,z,qx,qy,qz,qw\n12.5,1,2,3,4,5,6,9").at(0), "12.5e-6") << unit;
   EXPECT_EQ(LastOf("#t [ns],x,y,z,qw,qx,qy,qz\n12.5,1,2,3,9,4,5,6").at(0), "12.5") << "seconds, the header kept";
   EXPECT_EQ(LastOf("%time x y z qx qy qz qw\n75 1 2 3 4 5 6 9").at(0), "75") << "a comment of MATLAB's";
   EXPECT_THAT(LastOf("75 1 2 3 9 4 5 6", true), ElementsAre("75e-9", "1", "2", "3", "4", "5", "6", "9"));
@@ -103,6 +118,8 @@ TEST(PoseTable, RefusesOtherKindsByTheFirstRow) {
            {"# timestamp [s] position x y z [m] quaternion w x y z\n1 1 2 3 1 0 0 0", "no column for qx, qy, qz"},
            {"# id tx ty tz qw qx qy qz\n1 1 2 3 1 0 0 0", "no column for timestamp"},
            {"t,x,y,z,q0,q1,q2,q3\n1,1,2,3,1,0,0,0", "no column for qx, qy, qz, qw"},
+           {"t,x,y,z,quaternion,wxyz,a,b\n1,1,2,3,1,0,0,0", "no column for qx, qy, qz, qw"},
+           {"t,a,b,c,qw,qx,qy,qz\n1,1,2,3,1,0,0,0", "no column for tx, ty, tz"},
            {"t,gt_px,gt_py,gt_pz,gt_qx,gt_qy,gt_qz,gt_qw,px,py,pz,qx,qy,qz,qw\n1,1,2,3,0,0,0,1,1,2,3,0,0,0,1",
             "two poses"},
            {"t,x,y,z,v,qw,qx,qy,qz\n1,1,2,3,1,0,0,0", "the header names 9 columns, and this row has 8"}}) {

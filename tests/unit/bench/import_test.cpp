@@ -12,6 +12,7 @@
 
 #include "sim/scenario/scenario.h"
 #include "sim/world/scene.h"
+#include "sim/world/texture.h"
 #include "tests/temporary_folder.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/run/commands.h"
@@ -147,7 +148,7 @@ TEST(ImportTest, ModelWithScaleScriptAndTextureIsFound) {
 }
 
 TEST(ImportTest, ColladaIsTakenInItsOwnAxes) {
-  for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
+  for (const char* up : {"X_UP", "Y_UP", "Z_UP", "\n Z_UP "}) {
     const Folder folder;
     folder.Write("t.dae", Collada(up));
     const Loaded world = Imported(
@@ -196,6 +197,8 @@ TEST(ImportTest, BadInputIsNamedWithFileAndLine) {
   EXPECT_THAT(ErrorOf(folder, World("\n" + Model("m", "0 0 0 0 0 0", Visual("<mesh><uri>no.obj</uri></mesh>")))),
               HasSubstr("world.sdf:4: no.obj: no such file"));
   EXPECT_THAT(ErrorOf(folder, World(Model("m", "0 0 0 0 0 0", ""))), HasSubstr("has no visuals"));
+  EXPECT_THAT(ErrorOf(folder, World("\n" + Model("m", "1,5 0 0 0 0 0", box))),
+              HasSubstr("world.sdf:4: <pose>: '1,5 0 0 0 0 0' has commas"));
   folder.Write("bad.obj", "f 1 2 3\n");
   EXPECT_THAT(ErrorOf(folder, World(Model("m", "0 0 0 0 0 0", Visual("<mesh><uri>bad.obj</uri></mesh>")))),
               HasSubstr("bad.obj"));
@@ -214,6 +217,55 @@ TEST(ImportTest, UrdfOfAPackage) {
                              "<joint name='j' type='revolute'><parent link='a'/><child link='b'/><axis "
                              "xyz='0 0 1'/><limit lower='0' upper='1' effort='1' velocity='1'/></joint></robot>");
   EXPECT_EQ(Imported(folder, file).scene.meshes.size(), 2u);
+}
+
+std::string UrdfBox(const std::string& name, const std::string& more, const std::string& visual = "") {
+  return "<link name='" + name + "'>" + more + "<visual><geometry><box size='1 1 1'/></geometry>" + visual +
+         "</visual></link>";
+}
+
+std::string UrdfOf(const std::string& child, const std::string& more = "") {
+  return "<robot name='r'>" + more + UrdfBox("a", "") + child +
+         "<joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 1'/></joint></robot>";
+}
+
+// No link is lost for its mass or for a shape of another visual; colours are those of the file.
+TEST(ImportTest, UrdfLinksAndColours) {
+  const Folder folder;
+  const std::string massless =
+                        "<inertial><mass value='0'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/>"
+                        "</inertial>",
+                    capsule = "<visual><geometry><capsule radius='1' length='1'/></geometry></visual>",
+                    brown = "<material name='brown'><color rgba='0.4 0.2 0.1 1'/></material>";
+  for (const std::string& more : {massless, capsule}) {
+    const ImportedWorld world =
+        ReadSdf(folder.Write("r.urdf", UrdfOf(UrdfBox("b", more, brown))), {}, folder / "shapes");
+    ASSERT_EQ(world.world.meshes.size(), 2u) << more;
+    EXPECT_EQ(world.warnings.size(), more == capsule ? 1u : 0u);
+    const glm::dvec3 color = world.world.meshes[1].color.value();
+    EXPECT_NEAR(color.r, sim::SrgbToLinear(0.4), 1e-6);
+    EXPECT_NEAR(color.b, sim::SrgbToLinear(0.1), 1e-6);
+  }
+  const std::string textured = "<material name='t'><texture filename='t.png'/></material>";
+  const ImportedWorld grey = ReadSdf(folder.Write("t.urdf", UrdfOf(UrdfBox("b", "", textured))), {}, folder / "shapes");
+  EXPECT_NEAR(grey.world.meshes.at(1).color.value().r, sim::SrgbToLinear(0.7), 1e-6);
+  EXPECT_THAT(grey.warnings, testing::ElementsAre(HasSubstr("a texture of URDF is left out")));
+}
+
+TEST(ImportTest, UrdfThatCannotBeReadIsRefused) {
+  const Folder folder;
+  const auto problem = [&](const std::string& text) -> std::string {
+    try {
+      ReadSdf(folder.Write("r.urdf", text), {}, folder / "shapes");
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string turned = "<visual><origin rpy='0 0'/><geometry><box size='1 1 1'/></geometry></visual>";
+  EXPECT_THAT(problem(UrdfOf(UrdfBox("b", turned))), HasSubstr("r.urdf: of its 3 visuals only "));
+  EXPECT_THAT(problem(UrdfOf("\n<xacro:wheel name='b'/>")), HasSubstr("r.urdf:2: is xacro, not URDF: expand it"));
+  EXPECT_THAT(problem(UrdfOf(UrdfBox("${name}", ""))), HasSubstr("is xacro"));
 }
 
 TEST(ImportTest, ModelConfigNamesTheVersion) {

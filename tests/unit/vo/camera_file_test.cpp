@@ -253,6 +253,14 @@ TEST_F(CameraFile, OfKalibrAndOpenVins) {
       vo::ReadCamera(Write(
           "c.yaml", "%YAML:1.0\n\n" + cam + "  distortion_model: radtan\n  distortion_coeffs: [-0.25, 0, 0, 0]\n")),
       -0.25);
+  const std::string alone =
+      "camera_model: pinhole\nintrinsics: [458.5, 457.25, 367.25, 248.375]\nresolution: [752, 480]\n"
+      "distortion_model: radtan\ndistortion_coeffs: [-0.25, 0, 0, 0]\n";
+  ExpectRadtan(vo::ReadCamera(Write("c.yaml", alone)), -0.25);
+  ExpectRadtan(
+      vo::ReadCamera(Write("c.yaml", "cam1: {" + std::string("camera_model: pinhole, distortion_model: none, ") +
+                                         "intrinsics: [458.5, 457.25, 367.25, 248.375], resolution: [752, 480]}")),
+      0);
   EXPECT_THAT(
       ErrorOf(Write("c.yaml", "%YAML:1.0\nverbosity: INFO\nrelative_config_imucam: kalibr_imucam_chain.yaml\n")),
       HasSubstr("give the file that relative_config_imucam names"));

@@ -221,14 +221,23 @@ std::vector<Section> Section::List(const std::string& key, const std::string& sh
   return sections;
 }
 
-void Section::Reject(const std::string& key, const std::string& message) {
+const Place& Section::PlaceOf(const std::string& key) const {
   const Element* element = request_->element;
-  Place place = request_->place;
+  const Place* place = &request_->place;
   for (const std::string& part : Split(key)) {
     element = element && element->kind == Element::Kind::map ? element->Find(part) : nullptr;
-    if (element) place = element->place;
+    if (element) place = &element->place;
   }
-  state_->problems.push_back(place.AsProblem(message));
+  return *place;
+}
+
+std::string Section::Where(const std::string& key) const {
+  const std::string text = ToString(PlaceOf(key).AsProblem(""));
+  return text.substr(0, text.rfind(": "));
+}
+
+void Section::Reject(const std::string& key, const std::string& message) {
+  state_->problems.push_back(PlaceOf(key).AsProblem(message));
 }
 
 void Section::Reject(const std::vector<FieldProblem>& problems) {

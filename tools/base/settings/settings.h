@@ -45,6 +45,7 @@ struct RawYaml {
 };
 
 struct Element;  // of the file
+struct Place;    // in the file
 struct Request;  // a registered read of a key
 struct State;    // of a document
 
@@ -111,6 +112,8 @@ class Section {
   // Adds a problem at the place of `key` (dotted for one further down), or of this section where the key is absent. For
   // rules between several values.
   void Reject(const std::string& key, const std::string& message);
+  // "FILE:LINE:COLUMN" of a key, or of the section where it has none: for problems that are found later.
+  std::string Where(const std::string& key) const;
   void Reject(const std::vector<FieldProblem>& problems);
   void RequirePresent(const std::string& key);
   // Where the old key or value is given, adds a problem that names the new one and returns true.
@@ -127,6 +130,7 @@ class Section {
   Section(std::shared_ptr<State> state, Request* request) : state_(std::move(state)), request_(request) {}
 
   const Element* Find(const std::string& key) const;
+  const Place& PlaceOf(const std::string& key) const;
   Request& Register(const std::string& key);
   bool ReadName(const std::string& key, const std::vector<std::string>& names, std::size_t& index);
   template <class T, class Parse>

@@ -61,6 +61,11 @@ CampaignFile::CampaignFile(const std::filesystem::path& file, std::vector<std::s
     : document_(settings::Document::FromFile(file)),
       our_systems_(std::move(systems)),
       images_alone_(std::move(images_alone)) {
+  for (const char* key : {"camera", "cameras", "world"})
+    if (document_.root().Has(key))
+      throw settings::Error({{file.string(), 0, 0,
+                              "is a scenario: `vobench run " + file.string() +
+                                  " -o OUT`, or list it under `scenarios:` in a campaign's file"}});
   const std::filesystem::path folder = file.parent_path();
   campaign_.name = file.stem().string();
   document_.root().Read("name", campaign_.name);

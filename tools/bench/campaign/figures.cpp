@@ -36,6 +36,7 @@ Numbers Doses(const Curve& curve) {
 
 Series Of(const CurveLine& line, std::size_t system, Draw draw) {
   Series series = report::LineOf(line.system, system, {}, {});
+  series.name = line.system;  // as in the tables
   series.draw = draw;
   return series;
 }

@@ -62,7 +62,7 @@ std::string Verdicts(const std::vector<Curve>& curves) {
       if (!line.breaks) continue;
       const bool unbroken = line.breaks->at.kind == evaluation::Crossing::Kind::not_reached;
       sentence += sentence.empty() ? "" : "; ";
-      sentence += "<b>" + Escape(DisplayName(line.system)) + "</b> ";
+      sentence += "<b>" + Escape(line.system) + "</b> ";
       sentence += unbroken ? "bears all of it (" + Escape(DoseText(curve, line.breaks->at)) + ")"
                            : "breaks at <b>" + Escape(DoseText(curve, line.breaks->at)) + "</b> [" +
                                  Escape(DoseText(curve, line.breaks->low)) + ", " +
@@ -94,7 +94,7 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
     const std::string of_few = coverage < kFewPoses ? fmt::format(" @ {:.0f} % of the frames", 100 * coverage) : "";
     const std::string how = evaluation::Name(AlignmentOf(campaign, campaign.systems[s]));
     html += "<h2 class=\"system\">" + report::Key(s) +
-            Escape(Label(campaign.systems[s].external, DisplayName(system))) + "</h2>" +
+            Escape(Label(campaign.systems[s].external, system)) + "</h2>" +
             report::Tiles(
                 {{std::isinf(ate) ? ends : Fixed(100 * ate, 2) + " cm" + of_few, "ATE, median of all tasks",
                   "position RMSE after alignment " + how + "; a lost run counts as worse than any number"},
@@ -121,11 +121,11 @@ std::string TaskTable(const Campaign& campaign, const std::vector<TaskRecord>& r
     const TaskChoice choice = ChoiceOf(campaign, record.task);
     TextRow& row = rows.emplace_back(LevelsOf(campaign, varied, choice));
     row.insert(row.begin(), std::to_string(record.task));
-    row.insert(row.end(), {DisplayName(record.system), std::to_string(record.seed), Name(record.status),
+    row.insert(row.end(), {record.system, std::to_string(record.seed), Name(record.status),
                            evaluation::Name(AlignmentOf(campaign, campaign.systems[choice.system]))});
     for (const std::string& metric : shown) {
       const std::optional<double> value = record.metric(MetricIndex(metric));
-      row.push_back(value ? Readable(*value) : "–");
+      row.push_back(value ? base::Significant(*value, 3) : "–");
     }
   }
   const std::string which =
@@ -146,7 +146,7 @@ std::string CampaignPage(const Campaign& campaign, const Merged& merged) {
   report::Page page;
   page.title = campaign.name;
   page.summary = What(campaign, merged.records) + Verdicts(merged.curves) + SystemTiles(campaign, merged.records);
-  for (const SystemEntry& system : campaign.systems) page.systems.push_back(DisplayName(system.name));
+  for (const SystemEntry& system : campaign.systems) page.systems.push_back(system.name);
   for (const Curve& curve : merged.curves) {
     page.sections.push_back(
         {"Along " + curve.spec.along + (curve.group.empty() ? "" : ": " + curve.group),

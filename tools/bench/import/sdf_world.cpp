@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 #include <sstream>
@@ -12,6 +13,7 @@
 
 #include "sim/world/mesh_loader.h"
 #include "sim/world/texture.h"
+#include "sim/world/texture_file.h"
 #include "tools/base/files.h"
 #include "tools/base/text.h"
 #include "tools/bench/import/import.h"
@@ -40,12 +42,30 @@ glm::dvec3 Linear(const ignition::math::Color& c) { return Linear(glm::dvec3(c.R
 
 // Raw coordinates of a COLLADA file, which are SDF's, from those with y up, as it is loaded.
 glm::dquat RawFromYUp(const fs::path& file) {
-  if (file.extension() != ".dae" && file.extension() != ".DAE") return {1, 0, 0, 0};
-  const std::string text = base::ReadFile(file).value_or("");
-  if (text.find("<up_axis>Z_UP<") != std::string::npos) return {kHalf, kHalf, 0, 0};
-  return text.find("<up_axis>X_UP<") != std::string::npos ? glm::dquat(kHalf, 0, 0, -kHalf) : glm::dquat(1, 0, 0, 0);
+  if (sim::LowerExtension(file) != ".dae") return {1, 0, 0, 0};
+  const std::string text = base::ReadFile(file).value_or(""), tag = "<up_axis>";
+  const std::size_t at = text.find(tag), axis = text.find_first_not_of(" \t\r\n", at + tag.size());
+  if (at == std::string::npos || axis == std::string::npos) return {1, 0, 0, 0};
+  if (text.compare(axis, 4, "Z_UP") == 0) return {kHalf, kHalf, 0, 0};
+  return text.compare(axis, 4, "X_UP") == 0 ? glm::dquat(kHalf, 0, 0, -kHalf) : glm::dquat(1, 0, 0, 0);
 }
 
+// All elements below one.
+void ForEachElement(tinyxml2::XMLElement& of, const std::function<void(tinyxml2::XMLElement&)>& call) {
+  for (auto* child = of.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    call(*child);
+    ForEachElement(*child, call);
+  }
+}
+
+// Messages of the URDF reader.
+class UrdfMessages : public console_bridge::OutputHandler {
+ public:
+  void log(const std::string& text, console_bridge::LogLevel, const char*, int) override { all.push_back(text); }
+  std::vector<std::string> all;
+};
+
+constexpr char kUnknownShape[] = "a shape that is none of box, sphere, cylinder, plane and mesh is left out";
 constexpr char kModelsRemedy[] = "; --models names folders of models, fetched before";
 
 class Reader {
@@ -70,11 +90,16 @@ class Reader {
     config.SetUnrecognizedElementsPolicy(sdf::EnforcementPolicy::LOG);
     config.SetFindCallback([this](const std::string& uri) { return Find(uri, file_).string(); });
     sdf::Root root;
-    console_bridge::noOutputHandler();  // invalid SDF is tried as URDF, whose reader prints its problems
+    UrdfMessages messages;  // invalid SDF is tried as URDF, whose reader prints its problems
+    console_bridge::useOutputHandler(&messages);
     Note(urdf_.empty() ? root.Load(file_.string(), config) : root.LoadSdfString(urdf_, config));
+    console_bridge::noOutputHandler();
     if (problems_.empty() && root.WorldCount() > 0) ReadWorld(*root.WorldByIndex(0));
     if (root.WorldCount() > 1) warnings_.Add(file_.string() + ": ", "worlds after the first are left out");
     if (problems_.empty() && root.Model() != nullptr) ReadModel(*root.Model(), Pose::Zero, root.Model()->Name());
+    if (const std::size_t read = result_.world.meshes.size(); problems_.empty() && read < urdf_visuals_)
+      problems_.insert(fmt::format("{}: of its {} visuals only {} can be read{}{}", file_.string(), urdf_visuals_, read,
+                                   messages.all.empty() ? "" : ": ", base::Join(messages.all, "; ")));
     if (!problems_.empty()) throw std::runtime_error(base::Join({problems_.begin(), problems_.end()}, "\n"));
     if (result_.world.meshes.empty()) throw std::runtime_error(file_.string() + ": has no visuals");
     result_.warnings = warnings_.Summed();
@@ -91,13 +116,60 @@ class Reader {
     const std::string name = xml.RootElement()->Name();
     if (name != "sdf" && name != "gazebo" && name != "robot")
       throw std::runtime_error(file_.string() + ": is neither SDF nor URDF: its element is <" + name + ">");
-    if (name == "robot") urdf_ = WithInertia(xml);
+    ForEachElement(*xml.RootElement(), [&](tinyxml2::XMLElement& element) {
+      const std::string text = element.GetText() == nullptr ? "" : element.GetText();
+      if (text.find(',') != std::string::npos && text.find_first_not_of("0123456789+-.,eE \t\r\n") == std::string::npos)
+        Reject(file_.string(), element.GetLineNum(),
+               fmt::format("<{}>: '{}' has commas: numbers have points, and blanks "
+                           "between them",
+                           element.Name(), text));
+    });
+    if (!problems_.empty()) throw std::runtime_error(base::Join({problems_.begin(), problems_.end()}, "\n"));
+    if (name == "robot") urdf_ = ReadableUrdf(xml);
   }
 
-  // Text of a URDF where each link has an inertia: libsdformat leaves out those without.
-  static std::string WithInertia(tinyxml2::XMLDocument& xml) {
+  // Text of a URDF as libsdformat takes it: it leaves out links without an inertia or with no mass, and with a shape that
+  // it does not know all visuals of its link; textures it makes black.
+  std::string ReadableUrdf(tinyxml2::XMLDocument& xml) {
+    std::vector<tinyxml2::XMLElement*> unknown, textures;
+    ForEachElement(*xml.RootElement(), [&](tinyxml2::XMLElement& element) {
+      const std::string name = element.Name();
+      bool is_macro = name.starts_with("xacro:");
+      for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next())
+        is_macro = is_macro || std::string_view(a->Value()).find("${") != std::string_view::npos;
+      if (is_macro)
+        throw std::runtime_error(fmt::format("{}:{}: is xacro, not URDF: expand it (`xacro {} > robot.urdf`)",
+                                             file_.string(), element.GetLineNum(), file_.filename().string()));
+      if (name == "texture") textures.push_back(&element);
+      if (name != "visual") return;
+      const auto* geometry = element.FirstChildElement("geometry");
+      const auto* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+      const std::string kind = shape == nullptr ? "none" : shape->Name();
+      if (kind == "box" || kind == "sphere" || kind == "cylinder" || kind == "mesh") return void(++urdf_visuals_);
+      warnings_.Add(fmt::format("{}:{}: ", file_.string(), element.GetLineNum()), kUnknownShape);
+      unknown.push_back(&element);
+    });
+    for (tinyxml2::XMLElement* texture : textures) {
+      tinyxml2::XMLElement* const material = texture->Parent()->ToElement();
+      warnings_.Add(fmt::format("{}:{}: ", file_.string(), texture->GetLineNum()),
+                    "a texture of URDF is left out: grey");
+      material->DeleteChild(texture);
+      if (material->FirstChildElement("color") == nullptr)
+        material->InsertNewChildElement("color")->SetAttribute("rgba", "0.7 0.7 0.7 1");
+    }
+    ForEachElement(*xml.RootElement(), [](tinyxml2::XMLElement& element) {
+      std::istringstream numbers(std::string(element.Name()) == "color" && element.Attribute("rgba") != nullptr
+                                     ? element.Attribute("rgba")
+                                     : "");
+      if (glm::dvec4 c; numbers >> c.r >> c.g >> c.b >> c.a) {  // libsdformat divides by 0.8
+        c *= glm::dvec4(0.8, 0.8, 0.8, 1);
+        element.SetAttribute("rgba", fmt::format("{} {} {} {}", c.r, c.g, c.b, c.a).c_str());
+      }
+    });
+    for (tinyxml2::XMLElement* visual : unknown) visual->Parent()->DeleteChild(visual);
     for (auto* link = xml.RootElement()->FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
-      if (link->FirstChildElement("inertial") != nullptr || link->Attribute("name", "world") != nullptr) continue;
+      if (link->Attribute("name", "world") != nullptr) continue;
+      while (auto* const given = link->FirstChildElement("inertial")) link->DeleteChild(given);
       auto* const inertial = link->InsertNewChildElement("inertial");
       inertial->InsertNewChildElement("mass")->SetAttribute("value", 1);
       auto* const inertia = inertial->InsertNewChildElement("inertia");
@@ -260,7 +332,7 @@ class Reader {
       if (!from->Submesh().empty()) warnings_.Add(who, "a submesh is not picked out: the whole file is taken");
       AddFoldersOf(mesh.file);
     } else {
-      return warnings_.Add(who, "a shape that is none of box, sphere, cylinder, plane and mesh is left out");
+      return warnings_.Add(who, kUnknownShape);
     }
     if (const sdf::Material* material = visual.Material()) ReadMaterial(*material, who, mesh);
     if (!mesh.texture.empty()) AddFolder(mesh.texture.parent_path());
@@ -309,6 +381,7 @@ class Reader {
 
   fs::path file_, shapes_;
   std::string urdf_;               // its text; empty: it is SDF
+  std::size_t urdf_visuals_ = 0;   // in it, of a known shape
   std::vector<fs::path> folders_;  // of models
   ImportedWorld result_;
   sim::WarningList warnings_;

@@ -59,12 +59,18 @@ Page PageOf(const std::filesystem::path& out, const ResultData& data) {
   const std::string own_paths = " Every seed flies a path of its own; shown is that of seed " +
                                 std::to_string(data.Typical(data.Systems().front()).entry.seed) + ", where " +
                                 Escape(DisplayName(data.Systems().front())) + " has its median ATE.";
+  const std::vector<Figure> errors = AlignedErrorFigures(data);
   page.sections = {
       {"Path",
        (judged.empty() ? "In the odometry's own world and scale." : "Estimates aligned to the truth by Sim(3).") +
            (data.SharedTruth() ? typical : own_paths),
        PathFigures(data)},
-      {"Errors", "Distance from the truth, after the same alignment." + typical, AlignedErrorFigures(data)},
+      {"Errors",
+       "Distance from the truth, after the same alignment." +
+           std::string(errors.size() == 1 ? " The orientation's is not determined: the positions lie on one line."
+                                          : "") +
+           typical,
+       errors},
       {"Runs", "", {}, RunTable(judged)},
       {"Consistency with the truth",
        "NEES compares errors, not aligned, with the filter's covariance: 1 is ideal, above the band it is "

@@ -39,8 +39,10 @@ std::string SystemSentence(const SystemSummary& s, const std::vector<SystemSumma
   text += "<b>" + Fixed(100 * s.ate_m, 2) + " cm</b> (" + Percent(s.ate_share_of_path, 2) + " of the path";
   if (std::isfinite(s.ate_live_m)) text += "; live answers " + Fixed(100 * s.ate_live_m, 2) + " cm";
   if (s.runs > 1) text += "; worst run " + Fixed(100 * s.ate_worst_m, 2) + " cm";
-  text += "), drift " + Fixed(100 * s.rpe_m, 2) + " cm/s and " + Fixed(kDegrees * s.rpe_rad, 2) + " °/s, " +
-          Percent(s.tracked_coverage) + " of the frames tracked; " + ConsistencyPhrase(s) + ". ";
+  text += std::isfinite(s.rpe_m)
+              ? "), drift " + Fixed(100 * s.rpe_m, 2) + " cm/s and " + Fixed(kDegrees * s.rpe_rad, 2) + " °/s, "
+              : "), no drift (it lasts less than a second), ";
+  text += Percent(s.tracked_coverage) + " of the frames tracked; " + ConsistencyPhrase(s) + ". ";
   const double best = std::min(baselines[0].ate_m, baselines[1].ate_m);
   text += s.ate_m < best ? "The better baseline has " + Readable(best / s.ate_m) + " times its ATE."
                          : "<b>Its ATE is not below that of the better baseline, which starts at the true pose and "
@@ -61,7 +63,8 @@ std::string PairwiseSentence(const std::vector<RunMetrics>& runs, const SystemSu
 }
 
 // Accuracy, drift and consistency of each system.
-std::string SystemTiles(const std::vector<SystemSummary>& systems, const std::vector<SystemSummary>& baselines) {
+std::string SystemTiles(const std::vector<SystemSummary>& systems, const std::vector<SystemSummary>& baselines,
+                        const std::string& gauge) {
   std::string html;
   for (std::size_t i = 0; i < systems.size(); ++i) {
     const SystemSummary& s = systems[i];
@@ -78,8 +81,8 @@ std::string SystemTiles(const std::vector<SystemSummary>& systems, const std::ve
               "prediction), " +
               Percent(s.pose_coverage) + " with a pose"},
          {Readable(s.nees_pose_per_dof), "NEES of the pose: how consistent it is, 1 is ideal",
-          "per degree of freedom, not aligned; " + Readable(s.nees_pose_scale_free_per_dof) + " blind to scale, NIS " +
-              Fixed(s.nis_per_dof, 2)}});
+          "per degree of freedom, " + gauge + "; " + Readable(s.nees_pose_scale_free_per_dof) +
+              " blind to scale, NIS " + Fixed(s.nis_per_dof, 2)}});
   }
   return html;
 }
@@ -128,7 +131,7 @@ std::string RunSummary(const ResultData& data, const std::vector<RunMetrics>& ju
     const std::string pair = PairwiseSentence(judged, summaries[0], summaries[i]);
     if (!pair.empty()) html += "<li>" + pair + "</li>";
   }
-  return html + "</ul>\n" + SystemTiles(summaries, baselines);
+  return html + "</ul>\n" + SystemTiles(summaries, baselines, Name(judged[0].metrics.options.gauge));
 }
 
 std::string RunTable(const std::vector<RunMetrics>& judged) {

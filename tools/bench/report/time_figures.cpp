@@ -152,6 +152,9 @@ std::vector<Figure> AlignedErrorFigures(const ResultData& data) {
       if (typical.judged) figure.series.push_back(SizeOfError(data, typical, s, rotation));
     }
   }
+  std::erase_if(figures, [](const Figure& figure) {  // of an orientation that the alignment does not determine
+    return std::ranges::all_of(figure.series, [](const Series& series) { return series.x.empty(); });
+  });
   return figures;
 }
 

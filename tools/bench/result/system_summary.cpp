@@ -124,11 +124,16 @@ std::string TextSummary(const std::vector<RunMetrics>& runs) {
     text += DisplayName(systems[0].system) + " has the smaller ATE in " + std::to_string(pair.wins) + " of " +
             std::to_string(pair.seeds) + " seeds against " + DisplayName(systems[i].system) + ".\n";
   }
+  for (const SystemSummary& s : systems)
+    if (s.tracked_coverage == 0)
+      text += DisplayName(s.system) + " tracked no frame: all its answers are predictions (docs/troubleshooting.md).\n";
   text +=
       "Medians over runs. ATE: position RMSE after Sim(3) alignment; live: of the answers as they were given. "
       "RPE: over one\nsecond, scale of the alignment. tracked: frames in which at least 10, and 40 % of the searched, "
-      "features match at the\nfirst prediction. NEES: of the pose, live, not aligned, 1 is ideal; scale-free: blind to "
-      "the map's scale. Baselines: from the true pose; constant velocity with the true velocity too.\n";
+      "features match at the\nfirst prediction. NEES: of the pose, live, " +
+      std::string(Name(runs[0].metrics.options.gauge)) +
+      ", 1 is ideal; scale-free: blind to the\nmap's scale. Baselines: from the true pose; constant velocity with the "
+      "true velocity too.\n";
   return text;
 }
 

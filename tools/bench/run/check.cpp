@@ -8,6 +8,7 @@
 #include "tools/bench/run/run_common.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
+#include "tools/bench/text.h"
 #include "tools/judge/evaluation/trajectory.h"
 
 namespace vobench {
@@ -63,17 +64,22 @@ void PrintWorld(const sim::Simulator& simulator) {
   for (const std::uint16_t v : image.wide) sum += v;
   const double most = std::ldexp(1.0, image.bits) - 1,
                count = static_cast<double>(image.data.size() + image.wide.size());
-  fmt::print("  the first frame's mean is {:.0f} % of white, by direct and ambient light alone\n",
-             100 * sum / count / most);
+  const double share = sum / count / most;
+  fmt::print("  the first frame's mean is {:.0f} % of white, by direct and ambient light alone\n", 100 * share);
+  if (share < 0.02 || share > 0.95)
+    PrintWarnings(
+        {fmt::format("the first frame is nearly {}: see `lights`, sensor.exposure, sensor.gain and "
+                     "sensor.white (docs/troubleshooting.md)",
+                     share < 0.5 ? "black" : "white")});
 }
 
 void PrintRevisits(const sim::Simulator& simulator) {
   constexpr std::size_t kMost = 5;
   const auto revisits =
       sim::Revisits(simulator.trajectory(), sim::Seconds(simulator.StampNs(simulator.frame_count() - 1)));
-  fmt::print("  returns {} times to an earlier view", revisits.size());
+  fmt::print("  returns to an earlier view: {}", Count(revisits.size(), "time"));
   for (std::size_t i = 0; i < std::min(kMost, revisits.size()); ++i)
-    fmt::print("{} at {:.1f} s ({:.1f} s)", i == 0 ? ":" : ",", revisits[i].t_s, revisits[i].earlier_s);
+    fmt::print(", at {:.1f} s to that at {:.1f} s", revisits[i].t_s, revisits[i].earlier_s);
   fmt::print("{}\n", revisits.size() > kMost ? ", ..." : "");
 }
 
@@ -89,8 +95,9 @@ void Check(const CheckOptions& options) {
   const Truth truth = TruthOf(simulator, 0, simulator.frame_count());
   const sim::Scenario& scenario = experiment.scenario;
   PrintFrames(options, scenario, truth);
-  fmt::print("  {:.2f} m of path, {} meshes, {} lights, seed {}\n", evaluation::PathLength(truth.poses),
-             scenario.world.meshes.size(), scenario.world.lights.size(), scenario.seed);
+  fmt::print("  {:.2f} m of path, {}, {}, seed {}\n", evaluation::PathLength(truth.poses),
+             Count(scenario.world.meshes.size(), "mesh file"), Count(scenario.world.lights.size(), "light"),
+             scenario.seed);
   PrintWorld(simulator);
   PrintRevisits(simulator);
   PrintSensor(scenario.sensor);

@@ -11,6 +11,7 @@
 #include "tools/bench/sequence/sequence_truth.h"
 #include "tools/bench/text.h"
 #include "tools/judge/evaluation/summary.h"
+#include "vo/sequence/reader.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -30,6 +31,12 @@ evaluation::EstimateRun ReadEstimate(const fs::path& path) {
     throw BadInput(fmt::format("{} holds {} runs: name one{}", path.string(), runs.size(),
                                runs.empty() ? "" : ", such as " + runs.front()));
   }
+  if (fs::exists(path / "campaign.json"))
+    throw BadInput(path.string() + ": is a campaign's folder, with the errors of its tasks in results.csv");
+  if (fs::is_directory(path) && !fs::exists(path / "estimate.txt"))
+    throw BadInput(path.string() +
+                   ": has no estimate.txt: ESTIMATE is a run folder or a trajectory, the sequence "
+                   "belongs after --truth");
   if (fs::is_directory(path)) return evaluation::ReadEstimateRun(path);
   evaluation::EstimateRun run;
   run.trajectory = evaluation::ReadTrajectory(path);
@@ -52,6 +59,8 @@ std::optional<evaluation::JudgeOptions> RecordedOptions(const fs::path& run) {
 // Of a file or a sequence.
 evaluation::Trajectory ReadTruth(const fs::path& path, evaluation::Reading reading = evaluation::Reading::strict) {
   if (!fs::is_directory(path)) return evaluation::ReadTrajectory(path, reading);
+  if (const std::string problem = vo::RigProblem(path); !problem.empty())
+    throw BadInput(fmt::format("{}, or {} for poses of the body", problem, (path / "groundtruth.txt").string()));
   const fs::path file = path / "groundtruth.txt";
   if (reading != evaluation::Reading::strict && fs::exists(file)) return evaluation::ReadTrajectory(file, reading);
   const std::optional<Truth> truth = ReadSequenceTruth(path);
@@ -79,8 +88,7 @@ void PrintNees(const evaluation::NeesSummary& nees, evaluation::Gauge gauge) {
     fmt::print("{:<28} none: no frame has a covariance that is positive definite\n", kNees);
     return;
   }
-  fmt::print("{:<28} {:.3f}  (ideal 1; {})\n", kNees, nees.mean / nees.dof,
-             gauge == evaluation::Gauge::as_is ? "no alignment" : "the first poses made equal");
+  fmt::print("{:<28} {:.3f}  (ideal 1; {})\n", kNees, nees.mean / nees.dof, Name(gauge));
 }
 
 void Print(const evaluation::Metrics& metrics, evaluation::Alignment alignment) {
@@ -121,6 +129,7 @@ void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Me
   if (const std::string problem = AlignmentProblem(metrics);
       !problem.empty() && alignment != evaluation::Alignment::none)
     throw BadInput(problem);
+  if (errors.pairs < 3) warn(AlignmentProblem(metrics));
   if (!fitted) return;
   const evaluation::Ate& ate = errors.Aligned(alignment);
   if (alignment == evaluation::Alignment::sim3 && !ate.similarity.scale_determined)
@@ -128,7 +137,11 @@ void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Me
   if (alignment == evaluation::Alignment::yaw && evaluation::TiltsZ(errors))
     warn("a rotation that fits turns z by more than 45 degrees: --align yaw is for worlds whose z is up in both");
   if (!ate.similarity.rotation_determined)
-    warn("the positions lie on one line or point: the rotation about it is not determined, nor are orientation errors");
+    warn(
+        fmt::format("the rotation is not determined, nor are orientation errors: the positions lie on one line or "
+                    "point, but for the error of {:.3g} cm{}",
+                    100 * ate.position.rmse,
+                    alignment == evaluation::Alignment::sim3 ? "" : " (is the scale unknown? --align sim3)"));
   if (alignment == evaluation::Alignment::sim3 &&
       ate.position.rmse > 0.9 * metrics.constant_pose.Aligned(alignment).position.rmse)
     warn("the estimate explains none of the true motion: the best scale shrinks it to nearly a point");

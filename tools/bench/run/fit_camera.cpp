@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -63,12 +64,20 @@ void Print(const CameraFit& fit) {
     fmt::print("  full_well: {:.0f} e # the noise is explained to {:.0f} %\n  read_noise: {:.2f} e\n  response: {}\n",
                s.full_well_e, 100 * fit.noise_misfit, s.read_noise_e,
                s.response == sim::Response::srgb ? "srgb" : "linear");
-  fmt::print(
-      "  optics: {{psf_sigma: {:.3f} px, vignetting_2: {:.3f}}} # +- {:.3f}\n"
-      "  processing: {{toe: {:.3f}, shoulder: {:.3f}, denoise_sigma: {:.3f} px, denoise_range: {}, "
-      "sharpen_bright: {:.3f}, sharpen_dark: {:.3f}, sharpen_sigma: {} px}}\n",
-      s.optics.psf_sigma_px, s.optics.vignetting_2, fit.vignetting_2.value_or(Measure{}).sigma, p.toe, p.shoulder,
-      p.denoise_sigma_px, p.denoise_range, p.sharpen_bright, p.sharpen_dark, p.sharpen_sigma_px);
+  std::vector<std::string> optics, processing;  // what is determined
+  if (fit.edges_known) optics.push_back(fmt::format("psf_sigma: {:.3f} px", s.optics.psf_sigma_px));
+  if (const auto& vignetting = fit.vignetting_2)
+    optics.push_back(fmt::format("vignetting_2: {:.3f}", vignetting->value));
+  if (fit.noise_known)
+    processing.push_back(fmt::format("toe: {:.3f}, shoulder: {:.3f}, denoise_sigma: {:.3f} px, denoise_range: {}",
+                                     p.toe, p.shoulder, p.denoise_sigma_px, p.denoise_range));
+  if (fit.edges_known)
+    processing.push_back(fmt::format("sharpen_bright: {:.3f}, sharpen_dark: {:.3f}, sharpen_sigma: {} px",
+                                     p.sharpen_bright, p.sharpen_dark, p.sharpen_sigma_px));
+  if (!optics.empty()) fmt::print("  optics: {{{}}}", fmt::join(optics, ", "));
+  if (fit.vignetting_2) fmt::print(" # +- {:.3f}", fit.vignetting_2->sigma);
+  if (!optics.empty()) fmt::print("\n");
+  if (!processing.empty()) fmt::print("  processing: {{{}}}\n", fmt::join(processing, ", "));
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ ImportedWorld WorldOf(const ImportOptions& options, const fs::path& shapes) {
     if (!fs::is_regular_file(files[0])) throw BadInput(config.string() + ": names no file that is there");
   } else if (fs::is_directory(options.from)) {
     files.assign(fs::directory_iterator(options.from), fs::directory_iterator());
+    std::erase_if(files, [](const fs::path& file) { return file.filename().string().starts_with("._"); });  // of macOS
     std::ranges::sort(files);
     const auto description = std::ranges::find_if(files, IsDescription);
     if (std::ranges::count_if(files, IsDescription) > 1)
@@ -120,7 +121,7 @@ std::string ListText(const glm::dvec3& v) {
 void Import(const ImportOptions& options) {
   const fs::path shapes = fs::path(options.output).replace_extension("").string() + "_shapes";
   for (const fs::path& made : {options.output, shapes}) {
-    if (fs::exists(made)) throw BadInput(made.string() + ": is there already");
+    if (fs::exists(made)) throw BadInput(made.string() + ": is there already; remove it or choose another name");
   }
   ImportedWorld from = WorldOf(options, shapes);
   from.world.missing_textures = sim::MissingTextures::grey;  // missing ones are reported by the renderer

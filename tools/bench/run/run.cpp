@@ -128,6 +128,8 @@ void TruthPictures::Write(const std::filesystem::path& out) const {
 }  // namespace
 
 void Run(const RunOptions& options) {
+  if (options.seed + static_cast<std::uint64_t>(options.runs - 1) < options.seed)
+    throw BadInput(fmt::format("--seed {} leaves no seeds for {} runs", options.seed, options.runs));
   const Clock clock;
   if (options.map) RequireMapPath(*options.map, options.output);
   const Experiment experiment = ReadExperiment(options.scenario, options.overrides);

@@ -51,13 +51,18 @@ void ForEach(std::size_t count, int jobs, const std::function<void(std::size_t)>
 
 std::string AlignmentProblem(const evaluation::Metrics& metrics) {
   if (metrics.errors.determines_alignment()) return "";
-  return fmt::format(
-      "{} of the poses have a true one within {:.0f} ms: fewer than three determine no alignment; are the stamps of "
-      "both in seconds of one clock?",
-      metrics.errors.pairs, static_cast<double>(metrics.options.association.gap_ns) * 1e-6);
+  const bool few_frames = metrics.coverage && metrics.coverage->frames < 3;
+  return fmt::format("{} of the poses have a true one within {:.0f} ms: fewer than three determine no alignment{}",
+                     metrics.errors.pairs, static_cast<double>(metrics.options.association.gap_ns) * 1e-6,
+                     few_frames ? "" : "; are the stamps of both in seconds of one clock?");
 }
 
 void Report(const ReportOptions& options) {
+  std::error_code none;
+  if (std::filesystem::exists(options.output / "campaign.json", none))
+    throw BadInput(options.output.string() + ": is a campaign's folder: `vobench campaign FILE -o` makes its report");
+  if (!std::filesystem::exists(options.output / "run.json", none))
+    throw BadInput(options.output.string() + ": has no run.json: it is no folder that `run` or `track` made");
   // Read here first, to distinguish a faulty folder from a report that cannot be written.
   Input([&] { return ReadRunJson(options.output); });
   try {

@@ -16,11 +16,11 @@ using Row = verification::Check;
 
 void Print(const Row& check) {
   if (check.count() == 0) {
-    fmt::print("{:<44} {:>11} {:>11} {:<9}  -\n", check.name(), "", "", "");
+    fmt::print("{:<56} {:>11} {:>11} {:<9}  -\n", check.name(), "", "", "");
     return;
   }
   const bool has_size = std::isfinite(check.value()) && check.bound() > 0;
-  fmt::print("{:<44} {:>11} {:>11} {:<9}  {:<4} {}\n", check.name(),
+  fmt::print("{:<56} {:>11} {:>11} {:<9}  {:<4} {}\n", check.name(),
              has_size ? fmt::format("{:.3g}", check.value()) : "", has_size ? fmt::format("{:.3g}", check.bound()) : "",
              check.unit(), check.failed() ? "FAIL" : "pass", check.failed() ? "" : "at " + check.where());
   constexpr std::size_t kShown = 4;
@@ -45,7 +45,7 @@ void Verify(const VerifyOptions& options) {
       throw BadInput(WordsOf(error));
     }
   }
-  fmt::print("{:<44} {:>11} {:>11} {:<9}  verdict\n", "check", "worst", "bound", "unit");
+  fmt::print("{:<56} {:>11} {:>11} {:<9}  verdict\n", "check", "worst", "bound", "unit");
   std::size_t failed = 0, made = 0;
   for (const Row& check : checks) {
     Print(check);

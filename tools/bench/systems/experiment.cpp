@@ -16,6 +16,9 @@ namespace {
 void ReadOthers(const std::filesystem::path& file, const Overrides& overrides, Experiment& experiment) {
   settings::Document document = settings::Document::FromFile(file);
   for (const auto& [key, value] : overrides) document.Override(key, value);
+  for (const char* key : {"scenarios", "sequences", "systems"})
+    if (document.root().Has(key))
+      throw BadInput(file.string() + ": is a campaign's file: `vobench campaign " + file.string() + " -o OUT`");
   settings::Section root = document.root();
   ReadOdometry(root.Child("odometry"), experiment.odometry);
   ReadPrior(root.Child("prior"), experiment.prior);

@@ -28,6 +28,8 @@ enum class Gauge {
                // of poses. Exact if that truth is; a noisy first truth makes every later NEES too large
 };
 
+inline const char* Name(Gauge gauge) { return gauge == Gauge::as_is ? "not aligned" : "the first poses made equal"; }
+
 // One frame that has truth, an estimate and a covariance. NaN where a value is undefined: no true velocity, or a
 // covariance that is not positive definite (as of a start known exactly).
 struct FrameConsistency {

@@ -62,7 +62,7 @@ TEST(CurveFigures, HaveTheMediansWithTheirIntervals) {
   EXPECT_EQ(ate.x.label, "exposure [ms]");
   EXPECT_TRUE(ate.x.logarithmic);
   const Series& median = *Drawn(ate, Draw::line, 0).at(0);
-  EXPECT_EQ(median.name, "RB²-PF");
+  EXPECT_EQ(median.name, "rb2pf");
   EXPECT_THAT(median.x, ElementsAre(1, 2, 4));
   EXPECT_THAT(median.y, testing::Each(testing::DoubleEq(0.0105)));
   const Series& band = *Drawn(ate, Draw::band, 0).at(0);
@@ -105,8 +105,8 @@ TEST(CampaignPage, BreakingPointsAndEscapedNames) {
   campaign.resolved = "{}";
   const std::string html = CampaignPage(campaign, {{}, {}, {Sample(false)}});
   EXPECT_THAT(html, HasSubstr("<h1>&lt;/script&gt;&lt;b&gt;</h1>"));
-  EXPECT_THAT(html, HasSubstr("exposure, a &amp; b: <b>RB²-PF</b> bears all of it (&gt; 4 ms)"));
-  EXPECT_THAT(html, HasSubstr("<b>RB-PF</b> breaks at <b>2 ms</b>"));
+  EXPECT_THAT(html, HasSubstr("exposure, a &amp; b: <b>rb2pf</b> bears all of it (&gt; 4 ms)"));
+  EXPECT_THAT(html, HasSubstr("<b>rbpf</b> breaks at <b>2 ms</b>"));
 }
 
 // Runs of an external program: how they ended, and no NEES.

@@ -40,19 +40,34 @@ TEST(ImageFile, ColoursAndOrder) {
   EXPECT_THAT(image.rgb, testing::ElementsAre(10, 20, 30, 1, 2, 3, 10, 20, 30, 10, 20, 30, 10, 20, 30, 10, 20, 30));
 }
 
+std::string Word(std::uint32_t value) {  // of a PNG
+  return {static_cast<char>(value >> 24), static_cast<char>(value >> 16), static_cast<char>(value >> 8),
+          static_cast<char>(value)};
+}
+
+std::string PngChunk(const std::string& type, const std::string& content) {
+  const std::string summed = type + content;
+  return Word(static_cast<std::uint32_t>(content.size())) + summed +
+         Word(libdeflate_crc32(0, summed.data(), summed.size()));
+}
+
+// Nothing behind the end chunk is read, whatever length that chunk has (found by fuzzing).
+TEST(ImageFile, WhatFollowsTheEndOfAPng) {
+  std::vector<std::uint8_t> bytes;
+  cv::imencode(".png", cv::Mat(2, 2, CV_8UC1, cv::Scalar(9)), bytes);
+  std::string text(bytes.begin(), bytes.end() - 12);
+  text += PngChunk("IEND", "abc") + Word(0x7fffffff) + "tEXt" + std::string(8, 'x');
+  EXPECT_THAT(Decode(text).rgb, testing::Each(9));
+}
+
 // tRNS of a grey PNG names the grey that is transparent.
 TEST(ImageFile, GreyThatIsTransparent) {
-  const auto word = [](std::uint32_t value) {
-    return std::string{static_cast<char>(value >> 24), static_cast<char>(value >> 16), static_cast<char>(value >> 8),
-                       static_cast<char>(value)};
-  };
   for (const int type : {CV_8UC1, CV_16UC1}) {
     cv::Mat picture(1, 3, type, cv::Scalar(200));
     picture.col(1).setTo(7);
     std::vector<std::uint8_t> bytes;
     cv::imencode(".png", picture, bytes);
-    std::string chunk = {"tRNS\0\7", 6};
-    chunk = word(2) + chunk + word(libdeflate_crc32(0, chunk.data(), chunk.size()));
+    const std::string chunk = PngChunk("tRNS", {"\0\7", 2});
     const auto at = std::ranges::search(bytes, std::string("IDAT")).begin() - 4;
     bytes.insert(at, chunk.begin(), chunk.end());
     EXPECT_THAT(DecodeImage(bytes, true).alpha, testing::ElementsAre(255, 0, 255)) << type;

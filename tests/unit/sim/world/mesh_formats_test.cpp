@@ -314,6 +314,87 @@ TEST(MeshFormats, ColladaOfOtherPrograms) {
   EXPECT_FLOAT_EQ(material.emission.x, 0.25f);
 }
 
+// A triangle in the plane z = 1 of COLLADA; `effect` is its shader, `extra` its skin's controller.
+std::string ColladaTriangle(const std::string& up, const std::string& effect, const std::string& nodes,
+                            const std::string& extra = "") {
+  return "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'><asset>"
+         "<up_axis>" +
+         up + "</up_axis></asset><library_effects><effect id='e'><profile_COMMON><technique sid='c'>" + effect +
+         "</technique></profile_COMMON></effect></library_effects><library_materials><material id='m'>"
+         "<instance_effect url='#e'/></material></library_materials><library_geometries><geometry id='g'><mesh>"
+         "<source id='x'><float_array id='xa' count='9'>0 0 1 1 0 1 0 1 1</float_array><technique_common>"
+         "<accessor source='#xa' count='3' stride='3'><param name='X' type='float'/><param name='Y' type='float'/>"
+         "<param name='Z' type='float'/></accessor></technique_common></source><vertices id='v'>"
+         "<input semantic='POSITION' source='#x'/></vertices><triangles material='m' count='1'>"
+         "<input semantic='VERTEX' source='#v' offset='0'/><p>0 1 2</p></triangles></mesh></geometry>"
+         "</library_geometries>" +
+         extra + "<library_visual_scenes><visual_scene id='w'>" + nodes +
+         "</visual_scene></library_visual_scenes><scene><instance_visual_scene url='#w'/></scene></COLLADA>";
+}
+
+constexpr char kInstance[] =
+    "<node id='n'><instance_geometry url='#g'><bind_material><technique_common><instance_material symbol='m' "
+    "target='#m'/></technique_common></bind_material></instance_geometry></node>";
+
+// Blanks about the axis; shaders that glow and have no diffuse colour are black otherwise.
+TEST(MeshFormats, ColladaAxisWithBlanksAndShadersThatGlowAlone) {
+  for (const std::string shader : {"lambert", "constant", "phong"}) {
+    const Folder folder;
+    const std::string glow = "<" + shader + "><emission><color>1 0 0.5 1</color></emission></" + shader + ">";
+    const Scene scene = LoadScene(WorldOf(folder.Write("m.dae", ColladaTriangle(" Z_UP\n", glow, kInstance))));
+    EXPECT_THAT(scene.meshes.at(0).positions, testing::Contains(glm::vec3(0, 1, -1))) << "z is up";
+    const Material& material = scene.materials.at(static_cast<std::size_t>(scene.meshes[0].material));
+    EXPECT_EQ(material.base_color, glm::vec3(0)) << shader;
+    EXPECT_EQ(material.emission, glm::vec3(1, 0, 0.5f)) << shader;
+  }
+}
+
+// Bind shape matrix (twice the size), inverse bind matrix (x less 1) and the joint's place (y 3) all count.
+TEST(MeshFormats, SkinsStandWhereTheirJointsAre) {
+  const auto source = [](const std::string& id, const std::string& array, const std::string& param,
+                         const std::string& values, int stride) {
+    return "<source id='" + id + "'><" + array + " id='" + id + "a' count='" + std::to_string(stride) + "'>" + values +
+           "</" + array + "><technique_common><accessor source='#" + id + "a' count='1' stride='" +
+           std::to_string(stride) + "'><param name='P' type='" + param + "'/></accessor></technique_common></source>";
+  };
+  const std::string skin =
+      "<library_controllers><controller id='k'><skin source='#g'>"
+      "<bind_shape_matrix>2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1</bind_shape_matrix>" +
+      source("j", "Name_array", "name", "J", 1) +
+      source("b", "float_array", "float4x4", "1 0 0 -1 0 1 0 0 0 0 1 0 0 0 0 1", 16) +
+      source("u", "float_array", "float", "1", 1) +
+      "<joints><input semantic='JOINT' source='#j'/><input semantic='INV_BIND_MATRIX' source='#b'/></joints>"
+      "<vertex_weights count='3'><input semantic='JOINT' source='#j' offset='0'/>"
+      "<input semantic='WEIGHT' source='#u' offset='1'/><vcount>1 1 1</vcount><v>0 0 0 0 0 0</v></vertex_weights>"
+      "</skin></controller></library_controllers>";
+  const std::string nodes =
+      "<node id='J' sid='J' type='JOINT'><translate>0 3 0</translate></node><node id='n'><instance_controller "
+      "url='#k'><skeleton>#J</skeleton></instance_controller></node>";
+  const Folder folder;
+  const Scene scene = LoadScene(WorldOf(folder.Write("m.dae", ColladaTriangle("Y_UP", "<lambert/>", nodes, skin))));
+  EXPECT_THAT(scene.meshes.at(0).positions,
+              testing::UnorderedElementsAre(glm::vec3(-1, 3, 2), glm::vec3(1, 3, 2), glm::vec3(-1, 5, 2)));
+}
+
+// The highest bit of a facet's colour in an STL of Magics: 1 where it has the object's.
+TEST(MeshFormats, StlColoursOfMagics) {
+  std::string text = std::string("COLOR=") + "\xff" + std::string(2, '\0') + "\xff";
+  text.resize(80);
+  Append<std::uint32_t>(text, {2});
+  for (const int attribute : {0x8000, 0x7c00}) {  // the object's red; blue of its own
+    Append<float>(text, {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, attribute == 0x8000 ? 0.0f : 1.0f});
+    text += static_cast<char>(attribute & 255);
+    text += static_cast<char>(attribute >> 8);
+  }
+  const Folder folder;
+  const Scene scene = LoadScene(WorldOf(folder.Write("m.stl", text)));
+  std::vector<glm::vec3> colors;
+  for (const Mesh& mesh : scene.meshes)
+    for (const auto& color : mesh.colors) colors.emplace_back(color);
+  EXPECT_THAT(colors, testing::Contains(glm::vec3(1, 0, 0)));
+  EXPECT_THAT(colors, testing::Contains(glm::vec3(0, 0, 1)));
+}
+
 // COLLADA with two sets of texture coordinates: the bound one counts, by its number among those of the polygons.
 TEST(MeshFormats, ColladaWithTwoSets) {
   const auto first_corners = [](const std::string& name, int bound, int set, std::vector<std::string>* warnings) {

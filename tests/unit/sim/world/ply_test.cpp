@@ -81,6 +81,20 @@ TEST_F(Ply, SeamsOfCorners) {
   EXPECT_THAT(scene.textures, SizeIs(1));
 }
 
+// Three numbers a corner are u, v, w; what is not read of materials and corners' colours is said.
+TEST_F(Ply, CornersWithAThirdCoordinate) {
+  folder_.Write("t.png", EncodeColor(".png", 1, 2, 3));
+  const Scene scene = Load(
+      "ply\nformat ascii 1.0\ncomment TextureFile t.png\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n"
+      "property list uchar float color\nproperty int material_index\nend_header\n0 0 0\n1 0 0\n1 1 0\n"
+      "3 0 1 2 9 0.25 0 7 0.5 0 7 0.5 1 7 3 1 0 0 0\n");
+  const Mesh& mesh = scene.meshes.at(0);
+  EXPECT_EQ(mesh.uvs.at(mesh.triangles.at(0).y), glm::vec2(0.5, 1));
+  EXPECT_EQ(mesh.uvs.at(mesh.triangles.at(0).z), glm::vec2(0.5, 0));
+  EXPECT_THAT(scene.warnings, testing::UnorderedElementsAre(HasSubstr("(material_index)"), HasSubstr("(color)")));
+}
+
 TEST_F(Ply, TexturesByNumberStripsAndColoursOfFaces) {
   for (const char* name : {"a.png", "b.png"}) folder_.Write(name, EncodeColor(".png", 1, 2, 3));
   const std::string vertices = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n";
