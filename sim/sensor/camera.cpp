@@ -136,8 +136,10 @@ glm::dvec3 ExactRay(const Camera& camera, int x, int y) {
 std::vector<settings::FieldProblem> Problems(CameraParams c) {
   settings::FieldCheck check;
   Visit(check, c);
+  const bool are_numbers = check.problems.empty();
   for (const auto& [key, centre, size] : {std::tuple("cx", c.cx, c.width), {"cy", c.cy, c.height}})
-    check.Require(centre >= -size && centre <= 2.0 * size, key, centre, "is farther from the image than its size");
+    check.Require(!are_numbers || (centre >= -size && centre <= 2.0 * size), key, centre,
+                  "is farther from the image than its size");
   if (c.lens == Lens::fisheye) {
     check.Require(c.p1 == 0, "distortion.p1", c.p1, "must be 0: a fisheye lens has no such term");
     check.Require(c.p2 == 0, "distortion.p2", c.p2, "must be 0: a fisheye lens has no such term");

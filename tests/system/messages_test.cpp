@@ -239,7 +239,7 @@ const std::vector<Message>& Messages() {
       {"tools/bench/systems/experiment.cpp",
        {"check", "TINY", "--set", "odometry.filter.particles=-2"},
        {"--set odometry.filter.particles", "'-2'", "1 ... "}},
-      {"tools/bench/run/run_common.cpp", {"report", "nowhere"}, {"nowhere/run.json", "cannot be opened"}},
+      {"tools/bench/run/run_common.cpp", {"report", "nowhere"}, {"nowhere: has no run.json", "`run` or `track`"}},
       {"tools/judge/verification/files.cpp", {"verify", "nowhere"}, {"nowhere/rgb.txt", "is not there, and is needed"}},
       {"tools/bench/run/export.cpp",
        {"export", "nowhere", "--bag", "one.txt"},

@@ -174,6 +174,14 @@ TEST(Camera, AFisheyeLensHasItsOwnFaults) {
   EXPECT_EQ(Join(Problems(params), "; "), "distortion.k4 = 0.1 must be 0: only a fisheye lens has such a term");
 }
 
+TEST(Camera, APrincipalPointFarFromTheImageIsNone) {
+  CameraParams params;
+  params.cx = 3.0 * params.width;
+  EXPECT_THAT(Join(Problems(params), "; "), testing::EndsWith(" is farther from the image than its size"));
+  params.cx = 1.9 * params.width;
+  EXPECT_EQ(Join(Problems(params), "; "), "");
+}
+
 TEST(Camera, BadParametersAreAllNamed) {
   CameraParams params;
   params.width = 0;

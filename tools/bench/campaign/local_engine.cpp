@@ -11,6 +11,7 @@
 #include "tools/bench/campaign/work.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
+#include "tools/bench/text.h"
 
 namespace vobench::campaign {
 namespace {
@@ -42,7 +43,9 @@ class LocalRun {
 
   void Run() {
     const auto sequences = static_cast<std::int64_t>(renderings_.size());
-    if (sequences > 0) fmt::print(stderr, "{} sequences to prepare, then {} tasks\n", sequences, tasks_);
+    if (sequences > 0)
+      fmt::print(stderr, "{} to prepare, then {}\n", Count(renderings_.size(), "sequence"),
+                 Count(static_cast<std::size_t>(tasks_), "task"));
     progress_.emplace("campaign", sequences + tasks_, 0, sequences > 0 ? "steps" : "tasks");
     while (next_rendering_ < renderings_.size() || !ready_.empty() || pool_.running() > 0) {
       while (StartOne()) {

@@ -28,7 +28,7 @@ evaluation::EstimateRun ReadEstimate(const fs::path& path) {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(path))
       if (entry.path().filename() == "estimate.txt") runs.push_back(entry.path().parent_path().string());
     std::ranges::sort(runs);
-    throw BadInput(fmt::format("{} holds {} runs: name one{}", path.string(), runs.size(),
+    throw BadInput(fmt::format("{} holds {}: name one{}", path.string(), Count(runs.size(), "run"),
                                runs.empty() ? "" : ", such as " + runs.front()));
   }
   if (fs::exists(path / "campaign.json"))

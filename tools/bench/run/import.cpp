@@ -140,8 +140,8 @@ void Import(const ImportOptions& options) {
   const auto is_shape = [&](const sim::MeshDescription& mesh) { return mesh.file.parent_path() == shapes; };
   if (std::ranges::none_of(from.world.meshes, is_shape)) fs::remove_all(shapes);
   PrintWarnings(from.warnings);
-  fmt::print("{}: {} meshes, {} lights; `vobench check` says more, `vobench render` draws it\n",
-             options.output.string(), from.world.meshes.size(), from.lights.size());
+  fmt::print("{}: {}, {}; `vobench check` says more, `vobench render` draws it\n", options.output.string(),
+             Count(from.world.meshes.size(), "mesh file"), Count(from.lights.size(), "light"));
 }
 
 }  // namespace vobench

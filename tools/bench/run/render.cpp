@@ -17,6 +17,7 @@
 #include "tools/bench/sequence/preview.h"
 #include "tools/bench/systems/bridge.h"
 #include "tools/bench/systems/experiment.h"
+#include "tools/bench/text.h"
 
 namespace vobench {
 namespace fs = std::filesystem;
@@ -127,7 +128,8 @@ void Render(const RenderOptions& options) {
   if (options.resume && !fs::exists(partial) && IsWhole(folder, simulator, content)) {
     fs::remove(folder / sim::kJournalName);  // left by a process killed at the end
     if (options.preview && !fs::exists(folder / "contact.jpg")) Preview(folder, simulator, content);
-    fmt::print("{} frames in {}, which was whole\n", content.last - content.first, options.output.string());
+    fmt::print("{} in {}, which was whole\n", Count(static_cast<std::size_t>(content.last - content.first), "frame"),
+               options.output.string());
     return;
   }
   std::optional<sim::SequenceWriter> writer;
@@ -149,7 +151,8 @@ void Render(const RenderOptions& options) {
   writer->Finish();
   base::ReplaceFolder(partial, folder);
   fs::remove(folder / sim::kJournalName);
-  fmt::print("{} frames in {}\n", content.last - content.first, options.output.string());
+  fmt::print("{} in {}\n", Count(static_cast<std::size_t>(content.last - content.first), "frame"),
+             options.output.string());
 }
 
 }  // namespace vobench
