@@ -93,8 +93,7 @@ std::string SystemTiles(const Campaign& campaign, const std::vector<TaskRecord>&
                  coverage = MedianOf(records, system, "pose_coverage");
     const std::string of_few = coverage < kFewPoses ? fmt::format(" @ {:.0f} % of the frames", 100 * coverage) : "";
     const std::string how = evaluation::Name(AlignmentOf(campaign, campaign.systems[s]));
-    html += "<h2 class=\"system\">" + report::Key(s) +
-            Escape(Label(campaign.systems[s].external, system)) + "</h2>" +
+    html += "<h2 class=\"system\">" + report::Key(s) + Escape(Label(campaign.systems[s].external, system)) + "</h2>" +
             report::Tiles(
                 {{std::isinf(ate) ? ends : Fixed(100 * ate, 2) + " cm" + of_few, "ATE, median of all tasks",
                   "position RMSE after alignment " + how + "; a lost run counts as worse than any number"},
