@@ -61,7 +61,7 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
     }
     files_.Opened(file, stream->FileSize());
     if (LowerExtension(file) == ".dae") return Collada(file);
-    if (LowerExtension(file) == ".stl") return Stl(file);
+    if (LowerExtension(file) == ".stl" && IsOfMagics(*stream)) return MagicsStl(file);
     return new BoundedStream(std::move(stream));  // Close() deletes it
   }
 
@@ -71,14 +71,19 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
     return Memory(ColladaForAssimp(base::ReadFile(file).value_or(""), warnings_));
   }
 
-  // Magics ("COLOR=" in the header) sets the highest bit of a facet's colour where it has the object's; assimp (5.2)
-  // takes it for a colour of its own.
-  Assimp::IOStream* Stl(const fs::path& file) {
+  static bool IsOfMagics(Assimp::IOStream& stream) {
+    std::string header(80, ' ');
+    stream.Read(header.data(), 1, header.size());
+    stream.Seek(0, aiOrigin_SET);
+    return !header.starts_with("solid") && header.find("COLOR=") != std::string::npos;
+  }
+
+  // Magics sets the highest bit of a facet's colour where it has the object's; assimp (5.2) takes it for one of its
+  // own.
+  static Assimp::IOStream* MagicsStl(const fs::path& file) {
     constexpr std::size_t kHeader = 84, kFacet = 50;
     std::string bytes = base::ReadFile(file).value_or("");
-    const bool is_of_magics =
-        !bytes.starts_with("solid") && std::string_view(bytes).substr(0, 80).find("COLOR=") != std::string_view::npos;
-    for (std::size_t at = kHeader + kFacet; is_of_magics && at <= bytes.size(); at += kFacet)
+    for (std::size_t at = kHeader + kFacet; at <= bytes.size(); at += kFacet)
       bytes[at - 1] = static_cast<char>(bytes[at - 1] ^ '\x80');
     return Memory(bytes);
   }
@@ -201,13 +206,14 @@ class Converter {
 
   // Vertices of a skin where its joints are: sum of w N^-1 J B v, with the joint's inverse bind matrix B.
   void Pose(const aiMesh& in, const glm::mat4& N, ImportedMesh& out) const {
+    const glm::mat4 from_root = glm::inverse(N);
     std::vector<glm::mat4> sum(in.mNumVertices, glm::mat4(0));
     std::vector<float> weight(in.mNumVertices, 0);
     for (unsigned b = 0; b < in.mNumBones; ++b) {
       const aiBone& bone = *in.mBones[b];
       const auto J = to_root_.find(bone.mName.C_Str());
       if (J == to_root_.end()) return;
-      const glm::mat4 M = glm::inverse(N) * J->second * ToGlm(bone.mOffsetMatrix);
+      const glm::mat4 M = from_root * J->second * ToGlm(bone.mOffsetMatrix);
       for (unsigned k = 0; k < bone.mNumWeights; ++k) {
         const auto& [vertex, w] = bone.mWeights[k];
         if (vertex >= in.mNumVertices) return;
@@ -232,7 +238,7 @@ class Converter {
     out.positions = Copied<glm::vec3>(in.mVertices, in.mNumVertices);
     out.normals = Copied<glm::vec3>(in.mNormals, in.mNumVertices);
     out.colors = Copied<glm::vec4>(in.mColors[0], in.mNumVertices);
-    if (extension_ == ".amf" && std::ranges::count(out.colors, glm::vec4(0)) == std::ssize(out.colors))
+    if (extension_ == ".amf" && std::ranges::all_of(out.colors, [](const glm::vec4& c) { return c == glm::vec4(0); }))
       out.colors.clear();  // assimp's, of a file without colours
     if (const auto N = mesh_to_root_.find(index); in.HasBones() && N != mesh_to_root_.end()) Pose(in, N->second, out);
     for (unsigned set = 0; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++set) {

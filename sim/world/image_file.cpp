@@ -113,17 +113,18 @@ std::vector<std::uint8_t> WithoutProfile(Bytes png) {
   return out;
 }
 
-// The content of a PNG's first chunk of a type; empty: it has none.
-Bytes ContentOf(Bytes png, std::string_view type) {
-  const std::vector<PngChunk> chunks = PngChunks(png);
+// The content of the first chunk of a type; empty: there is none.
+Bytes ContentOf(const std::vector<PngChunk>& chunks, std::string_view type) {
   const auto found = std::ranges::find(chunks, type, &PngChunk::type);
   return found == chunks.end() ? Bytes() : found->content;
 }
 
 // Where a grey PNG names one grey as transparent, which OpenCV ignores, the alpha of its pixels.
 cv::Mat AlphaOfGreyKey(Bytes png, const cv::Mat& grey) {
-  const Bytes header = ContentOf(png, "IHDR"), key = ContentOf(png, "tRNS");
-  if (grey.empty() || header.size() < 13 || header[9] != 0 || key.size() < 2 || grey.channels() != 1) return {};
+  if (grey.empty() || grey.channels() != 1) return {};
+  const std::vector<PngChunk> chunks = PngChunks(png);
+  const Bytes header = ContentOf(chunks, "IHDR"), key = ContentOf(chunks, "tRNS");
+  if (header.size() < 13 || header[9] != 0 || key.size() < 2) return {};
   const int bits = header[8], value = key[0] << 8 | key[1];
   return grey != (bits < 8 ? value * 255 / ((1 << bits) - 1) : value);
 }
@@ -134,10 +135,9 @@ double ExposureOf(std::string_view file) {
   double exposure = 1;
   for (std::size_t end = file.find('\n'); end != std::string_view::npos && end > 0; end = file.find('\n')) {
     const std::string_view line = file.substr(0, end);
-    const auto factor = line.starts_with(kKey)
-                            ? base::ParseNumber(base::SplitWords(line.substr(kKey.size())).at(0).text)
-                            : std::nullopt;
-    if (factor && *factor > 0) exposure *= *factor;
+    const std::vector<base::Word> words = base::SplitWords(line.starts_with(kKey) ? line.substr(kKey.size()) : "");
+    const double factor = words.empty() ? 0 : base::ParseNumber(words[0].text).value_or(0);
+    if (factor > 0) exposure *= factor;
     file.remove_prefix(end + 1);
   }
   return exposure;

@@ -119,17 +119,16 @@ class Reader {
     ForEachElement(*xml.RootElement(), [&](tinyxml2::XMLElement& element) {
       const std::string text = element.GetText() == nullptr ? "" : element.GetText();
       if (text.find(',') != std::string::npos && text.find_first_not_of("0123456789+-.,eE \t\r\n") == std::string::npos)
-        Reject(file_.string(), element.GetLineNum(),
-               fmt::format("<{}>: '{}' has commas: numbers have points, and blanks "
-                           "between them",
-                           element.Name(), text));
+        Reject(
+            file_.string(), element.GetLineNum(),
+            fmt::format("<{}>: '{}' has commas: numbers have points, and blanks between them", element.Name(), text));
     });
     if (!problems_.empty()) throw std::runtime_error(base::Join({problems_.begin(), problems_.end()}, "\n"));
     if (name == "robot") urdf_ = ReadableUrdf(xml);
   }
 
-  // Text of a URDF as libsdformat takes it: it leaves out links without an inertia or with no mass, and with a shape that
-  // it does not know all visuals of its link; textures it makes black.
+  // Text of a URDF as libsdformat takes it: that leaves out links without inertia or mass, and all visuals of a link
+  // that has one of an unknown shape; textures it makes black.
   std::string ReadableUrdf(tinyxml2::XMLDocument& xml) {
     std::vector<tinyxml2::XMLElement*> unknown, textures;
     ForEachElement(*xml.RootElement(), [&](tinyxml2::XMLElement& element) {

@@ -126,10 +126,10 @@ void CheckBasis(const evaluation::TrajectoryErrors& errors, const evaluation::Me
                 evaluation::Alignment alignment) {
   const auto warn = [](std::string_view what) { fmt::print(stderr, "vobench: warning: {}\n", what); };
   const bool fitted = alignment != evaluation::Alignment::none && alignment != evaluation::Alignment::first;
-  if (const std::string problem = AlignmentProblem(metrics);
-      !problem.empty() && alignment != evaluation::Alignment::none)
-    throw BadInput(problem);
-  if (errors.pairs < 3) warn(AlignmentProblem(metrics));
+  if (const std::string problem = AlignmentProblem(metrics); !problem.empty()) {
+    if (alignment != evaluation::Alignment::none) throw BadInput(problem);
+    warn(problem);
+  }
   if (!fitted) return;
   const evaluation::Ate& ate = errors.Aligned(alignment);
   if (alignment == evaluation::Alignment::sim3 && !ate.similarity.scale_determined)

@@ -87,7 +87,7 @@ TEST(Sky, ExposureOfARadiancePicture) {
   std::vector<std::uint8_t> bytes;
   cv::imencode(".hdr", cv::Mat(2, 4, CV_32FC3, cv::Scalar(3, 3, 3)), bytes);
   std::string text(bytes.begin(), bytes.end());
-  text.insert(text.find('\n') + 1, "EXPOSURE=2.0\nEXPOSURE= 0.75\n");
+  text.insert(text.find('\n') + 1, "EXPOSURE=2.0\nEXPOSURE= 0.75\nEXPOSURE=\nEXPOSURE=none\n");
   SkyDescription description;
   description.file = folder.Write("sky.hdr", text);
   EXPECT_NEAR(LoadSky(description).Radiance({0, 1, 0}).x, 2, 0.02);
