@@ -6,6 +6,28 @@
 #include "sim/sensor/sensor.h"
 
 namespace sim {
+namespace {
+
+// Root of an increasing function, or the end that is nearest to it: the Illinois algorithm (Dowell and Jarratt, 1971).
+template <class Function>
+double Root(double low, double high, const Function& f) {
+  constexpr double kClose = 1e-10;
+  double below = f(low), above = f(high), x = below < 0 ? high : low;
+  if (below >= 0 || above <= 0) return x;
+  for (int last = 0; high - low > kClose;) {
+    x = (low * above - high * below) / (above - below);
+    const double value = f(x);
+    if (std::abs(value) < kClose) break;
+    const int side = value < 0 ? -1 : 1;
+    (side < 0 ? low : high) = x;
+    (side < 0 ? below : above) = value;
+    if (side == last) (side < 0 ? above : below) /= 2;
+    last = side;
+  }
+  return x;
+}
+
+}  // namespace
 
 std::vector<std::string> Problems(const Exposure& exposure) {
   std::vector<std::string> problems;
@@ -50,14 +72,10 @@ double AutoExposure::Brightness(const RadianceImage& frame, double signal) const
 void AutoExposure::Meter(const RadianceImage& frame) {
   const AutoExposureParams& p = sensor_.auto_exposure;
   const double lowest = p.shortest_s, highest = p.longest_s * p.highest_gain;
-  // Bisection of the signal: brightness increases with it.
-  double low = std::log(lowest), high = std::log(highest);
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (Brightness(frame, std::exp(middle)) < p.target ? low : high) = middle;
-  }
+  const double wanted = Root(std::log(lowest), std::log(highest),
+                             [&](double log_signal) { return Brightness(frame, std::exp(log_signal)) - p.target; });
   const double now = std::log(setting_.exposure_s * setting_.gain);
-  const double next = std::clamp(std::exp(now + p.speed * (0.5 * (low + high) - now)), lowest, highest);
+  const double next = std::clamp(std::exp(now + p.speed * (wanted - now)), lowest, highest);
   setting_.exposure_s = std::clamp(next, p.shortest_s, p.longest_s);
   setting_.gain = std::max(1.0, next / setting_.exposure_s);
 }

@@ -163,6 +163,7 @@ class GltfReader {
     const auto positions = table("POSITION", 3);
     if (!positions) return;
     const auto append = [](const GltfTable& from, std::vector<glm::vec3>& to) {
+      to.reserve(from.count);
       for (std::size_t i = 0; i < from.count; ++i) to.emplace_back(from.at(i, 0), from.at(i, 1), from.at(i, 2));
     };
     append(*positions, mesh.positions);
@@ -187,6 +188,7 @@ class GltfReader {
       const auto uvs = table("TEXCOORD_" + std::to_string(set), 2);
       if (!uvs) continue;
       mesh.uvs.resize(set + 1);
+      mesh.uvs[set].reserve(uvs->count);
       for (std::size_t i = 0; i < uvs->count; ++i) mesh.uvs[set].emplace_back(uvs->at(i, 0), 1 - uvs->at(i, 1));
     }
     std::vector<std::uint32_t> indices;
@@ -230,6 +232,7 @@ class GltfReader {
 
   static void AppendTriangles(const std::vector<std::uint32_t>& indices, int mode, ImportedMesh& mesh) {
     const std::size_t n = indices.size(), step = mode == kTriangles ? 3 : 1;
+    mesh.triangles.reserve(n / step);
     for (std::size_t i = 0; i + 2 < n; i += step) {
       if (mode == kFan) {
         mesh.triangles.emplace_back(indices[0], indices[i + 1], indices[i + 2]);

@@ -181,10 +181,11 @@ cv::Mat CodedHdr(Bytes bytes) {
 }
 
 DecodedImage DecodeByOpenCv(Bytes bytes, bool with_alpha) {
+  const bool is_jpeg = AsChars(bytes).starts_with("\xff\xd8");  // which has no alpha
   const cv::Mat bgr = AsChars(bytes).starts_with("#?")
                           ? CodedHdr(bytes)
                           : DecodeMatrix(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION),
-                all = with_alpha ? DecodeMatrix(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
+                all = with_alpha && !is_jpeg ? DecodeMatrix(bytes, cv::IMREAD_UNCHANGED) : cv::Mat();
   DecodedImage image(bgr);
   if (all.channels() == 4 && all.size() == bgr.size() && (all.depth() == CV_8U || all.depth() == CV_16U)) {
     cv::Mat alpha;

@@ -1,8 +1,6 @@
 #include "sim/world/texture.h"
 
-#include <sys/mman.h>
 #include <tbb/parallel_for.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -11,17 +9,6 @@
 
 namespace sim {
 namespace {
-
-// Uninitialised memory, in large pages where available: pages of 4 KiB take longer to map than to fill.
-template <class T>
-std::shared_ptr<T[]> LargeArray(std::size_t count) {
-  std::shared_ptr<T[]> values = std::make_shared_for_overwrite<T[]>(count);
-  const auto page = static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE));
-  const std::uintptr_t begin = (reinterpret_cast<std::uintptr_t>(values.get()) + page - 1) / page * page,
-                       end = reinterpret_cast<std::uintptr_t>(values.get() + count);
-  if (end > begin) madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
-  return values;
-}
 
 std::vector<TextureLevel> LevelsOf(int width, int height) {
   std::vector<TextureLevel> levels{{width, height, 0}};
@@ -84,7 +71,7 @@ std::vector<Shrink> ShrinkWeights(int n, int m) {
 template <class Values>
 std::shared_ptr<float[]> Shrunk(const Values& at, int width, int height, int to_width, int to_height) {
   const std::vector<Shrink> columns = ShrinkWeights(width, to_width), rows = ShrinkWeights(height, to_height);
-  const std::shared_ptr<float[]> out = LargeArray<float>(3 * columns.size() * rows.size());
+  const std::shared_ptr<float[]> out = std::make_shared_for_overwrite<float[]>(3 * columns.size() * rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
     for (std::size_t k = 0; k < 4 && rows[y].weight[k] > 0; ++k) {
       const std::size_t row = (static_cast<std::size_t>(rows[y].first) + k) * static_cast<std::size_t>(width);
@@ -111,7 +98,8 @@ template <class Texels>
 std::shared_ptr<float[]> TiledLevels(std::span<const std::uint8_t> rgb, int width, int height,
                                      const std::array<float, 256>& linear_of_code, bool roots, const Texels& texels) {
   const int columns = width / kTile;
-  const std::shared_ptr<float[]> out = LargeArray<float>(3 * static_cast<std::size_t>(columns * (height / kTile)));
+  const std::shared_ptr<float[]> out =
+      std::make_shared_for_overwrite<float[]>(3 * static_cast<std::size_t>(columns * (height / kTile)));
   tbb::parallel_for(0, height / kTile, [&](int tile_y) {
     std::vector<float> fine(3 * kTile * kTile / 4), coarse(fine.size());
     for (int tile_x = 0; tile_x < columns; ++tile_x) {
@@ -211,7 +199,7 @@ void Texture::Allocate(int width, int height, std::size_t alpha) {
     throw std::invalid_argument("texture " + name_ + ": " + std::to_string(width) + " x " + std::to_string(height));
   levels_ = LevelsOf(width, height);
   const std::size_t count = levels_.back().RowBegin(1);
-  owner_ = LargeArray<std::uint32_t>(count + (alpha + 3) / 4);
+  owner_ = std::make_shared_for_overwrite<std::uint32_t[]>(count + (alpha + 3) / 4);
   texels_ = {owner_.get(), count}, alpha_ = {reinterpret_cast<const std::uint8_t*>(owner_.get() + count), alpha};
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
 #include "tests/system/program.h"
@@ -79,6 +80,21 @@ TEST_F(LayoutsTest, OneSequenceInEachLayoutGivesOneEstimate) {
   }
   EXPECT_EQ(ReadFile(here_ / "tum.ply"), ReadFile(here_ / "euroc.ply"));
   EXPECT_THAT(ReadFile(here_ / "tum.ply"), testing::StartsWith("ply\nformat ascii 1.0\n"));
+}
+
+// A camera's 12 bits in files of 16, which leave 16 of 255 steps; shifted up they are tracked without a warning.
+TEST_F(LayoutsTest, TrackWarnsOfFramesNearlyBlack) {
+  Run({"render", TinyScenario().string(), "-o", "s", "--frames", "0:4"});
+  const auto warning_with = [&](double factor, const std::string& output) {
+    for (const fs::directory_entry& file : fs::directory_iterator(here_ / "s/rgb")) {
+      cv::Mat image = cv::imread(file.path().string(), cv::IMREAD_UNCHANGED);
+      image.convertTo(image, CV_16U, factor);
+      cv::imwrite(file.path().string(), image);
+    }
+    return Run({"track", "s", "-o", output}).err;
+  };
+  EXPECT_THAT(warning_with(16, "dark"), testing::HasSubstr("the brightest pixel of all frames is 1"));
+  EXPECT_THAT(warning_with(16, "bright"), testing::Not(testing::HasSubstr("brightest pixel")));
 }
 
 TEST_F(LayoutsTest, DepthSaysWhereItsRangeEnds) {

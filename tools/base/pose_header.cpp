@@ -121,6 +121,7 @@ int ExponentOf(std::string_view cell) {
 
 struct Named {
   std::array<std::optional<std::size_t>, PoseHeader::kPose> columns;
+  std::optional<std::size_t> nanoseconds = {};
   bool has_two_poses = false;
   bool is_complete() const {
     return std::ranges::all_of(columns, [](const auto& c) { return c.has_value(); });
@@ -150,9 +151,8 @@ Named Assign(std::span<const std::string> names) {
         return std::optional(name.back() == 'w' ? kW : 4 + static_cast<std::size_t>(name.back() - 'x'));
     return AxisOf(name);
   };
-  const bool split_stamp = std::ranges::any_of(names, IsNanoseconds);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (const int r = RankAsStamp(names[i]); r > rank && !(r == 1 && split_stamp)) {
+    if (const int r = RankAsStamp(names[i]); r > rank) {
       found.columns[kStamp] = i;
       rank = r;
     } else if (const auto axis = axis_of(names[i])) {
@@ -160,6 +160,8 @@ Named Assign(std::span<const std::string> names) {
       if (!found.columns[*axis]) found.columns[*axis] = i;
     }
   }
+  if (const auto below = std::ranges::find_if(names, IsNanoseconds); rank == 1 && below != names.end())
+    found.nanoseconds = static_cast<std::size_t>(below - names.begin());
   if (found.columns[1] || found.columns[2] || found.columns[3]) return found;
   if (const std::vector<std::string> others = StemsOf(names, false); others.size() == 1) {  // such as cam_x
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -213,11 +215,12 @@ std::optional<PoseHeader> ReadPoseHeader(std::string_view written, std::string& 
     exponents.push_back(exponent);
   }
   Named found = Assign(names);
-  PoseHeader header{{}, names.size(), false, 0};
+  PoseHeader header{{}, names.size(), false, 0, found.nanoseconds};
   for (std::size_t first = 0; is_prose && first + PoseHeader::kPose <= names.size(); ++first) {
     const Named run = Assign(std::span(names).subspan(first, PoseHeader::kPose));
     if (!run.is_complete()) continue;
     header.is_prose = true;
+    header.nanoseconds.reset();
     found = run;
     for (auto& column : found.columns) *column += first;
     break;

@@ -83,7 +83,7 @@ std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
   return words;
 }
 
-std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& problem) const {
+std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& problem) {
   if (header_) {
     const std::array<std::size_t, kPose>& columns = header_->columns;
     const bool is_run = header_->is_prose && words.size() != header_->count;
@@ -96,6 +96,7 @@ std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& probl
     }
     std::vector<Word> row;
     for (const std::size_t column : columns) row.push_back(words[column - first]);
+    if (const auto column = header_->nanoseconds; column && *column < words.size()) nanoseconds_ = words[*column].text;
     return row;
   }
   if (is_euroc_ && words.size() >= kPose) {
@@ -109,6 +110,8 @@ std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& probl
 
 std::string PoseTable::Stamp(const Word& word) const {
   const std::string text(word.text);
+  if (header_ && header_->nanoseconds)
+    return text + "." + std::string(9 - std::min<std::size_t>(9, nanoseconds_.size()), '0') + nanoseconds_;
   const int exponent = header_ && header_->exponent != 0 ? header_->exponent : is_euroc_ && ParseWhole(text) ? -9 : 0;
   if (exponent == 0) return text;
   const std::size_t e = std::min(text.find_first_of("eE"), text.size());

@@ -23,13 +23,14 @@ class PoseTable {
   // comment, a header). A row of another length is returned unchanged. problem: where the header, or the first row,
   // shows another kind of file or does not say which column is which.
   std::vector<Word> Row(std::string_view line, std::string& problem);
-  // Of a row's first word, in seconds.
+  // Of the last row's first word, in seconds.
   std::string Stamp(const Word& word) const;
 
  private:
-  std::vector<Word> InOrder(std::vector<Word> words, std::string& problem) const;
+  std::vector<Word> InOrder(std::vector<Word> words, std::string& problem);
 
   bool is_euroc_, is_first_ = true;
+  std::string nanoseconds_;  // of the last row's stamp, where they have a column
   std::optional<PoseHeader> header_;
 };
 

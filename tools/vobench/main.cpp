@@ -13,6 +13,7 @@
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
 #include "tools/vobench/arguments.h"
+#include "tools/vobench/large_memory.h"
 
 namespace vobench {
 namespace {
@@ -42,6 +43,7 @@ int Fail(int status, std::string reason) {
 
 int Main(int argc, char** argv) try {
   HoldInterrupts();
+  UseLargePagesForMatrices();
   cv::setNumThreads(1);  // --jobs bounds the threads; OpenCV's own would come on top
   const std::variant<Command, int> asked = ParseArguments(argc, argv);
   if (const int* status = std::get_if<int>(&asked)) return *status;

@@ -68,6 +68,15 @@ TEST(PoseTable, TakesTheOrderOfItsHeader) {
   }
 }
 
+TEST(PoseTable, JoinsSecondsAndNanoseconds) {
+  for (const std::string header : {"#counter, sec, nsec,x,y,z,qx,qy,qz,qw", "field.seq,secs,nsecs,x,y,z,qx,qy,qz,qw",
+                                   "seq,header.stamp.sec,header.stamp.nanosec,tx,ty,tz,qx,qy,qz,qw"}) {
+    EXPECT_EQ(LastOf(header + "\n8,1583836591,82590976,1,2,3,4,5,6,9").at(0), "1583836591.082590976") << header;
+    EXPECT_EQ(LastOf(header + "\n8,7,0,1,2,3,4,5,6,9\n8,7,500000000,1,2,3,4,5,6,9").at(0), "7.500000000");
+  }
+  EXPECT_EQ(LastOf("# counter sec nsec x y z qx qy qz qw\n8 7 40 1 2 3 4 5 6 9").at(0), "7.000000040");
+}
+
 // Integer stamps of EuRoC's, VINS' and ROS' tables are nanoseconds; ROS: the header's stamp, not the time of arrival.
 TEST(PoseTable, NanosecondsWhereTheTableHasThem) {
   for (const std::string text :

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -65,9 +66,18 @@ void RequireSize(const vo::Frame& frame, const vo::Camera& camera, const TrackOp
                   options.sequence.string(), frame.image.cols, frame.image.rows));
 }
 
-// `announced`: frames of the sequence, by a video's header, which may be wrong by a few.
-std::vector<std::string> WarningsOf(const RunEntry& run, std::size_t frames, std::optional<std::int64_t> announced) {
+constexpr double kDark = 32;  // [DN]
+
+// `announced`: frames of the sequence, by a video's header, which may be wrong by a few. `brightest`: pixel of all
+// frames, or one of at least kDark.
+std::vector<std::string> WarningsOf(const RunEntry& run, std::size_t frames, std::optional<std::int64_t> announced,
+                                    double brightest) {
   std::vector<std::string> warnings;
+  if (brightest < kDark)
+    warnings.push_back(
+        fmt::format("the brightest pixel of all frames is {} of 255; files of 16 bits are divided by 257: multiply "
+                    "values of 10, 12 or 14 bits by 64, 16 or 4",
+                    brightest));
   const auto read = static_cast<std::int64_t>(frames);
   if (announced && read < *announced - std::max<std::int64_t>(1, *announced / 100))
     warnings.push_back(
@@ -118,6 +128,7 @@ void Track(const TrackOptions& options) {
   RunDescription description{fs::weakly_canonical(options.sequence).filename().string(), options.sequence.string(),
                              options.command_line, clock.started_utc()};
   const Clock tracking;
+  double brightest = 0;
   std::exception_ptr end;  // fault in a stream, which cannot be read again: the frames before are the result
   {
     Progress progress("tracking", frames.value_or(0));
@@ -134,6 +145,7 @@ void Track(const TrackOptions& options) {
     };
     while (const std::optional<vo::PreparedFrame> frame = Input(next)) {
       RequireSize(frame->frame, camera, options);
+      if (brightest < kDark) brightest = std::max(brightest, cv::norm(frame->grey, cv::NORM_INF));
       try {
         tracker.Track(*frame);
       } catch (const vo::FilterFault& fault) {
@@ -167,7 +179,7 @@ void Track(const TrackOptions& options) {
       fmt::print(stderr, "vobench: not judged: {}\n", error.what());
     }
   }
-  const std::vector<std::string> warnings = WarningsOf(run.entry, tracker.frames(), frames);
+  const std::vector<std::string> warnings = WarningsOf(run.entry, tracker.frames(), frames, brightest);
   for (const std::string& warning : warnings) description.notes.push_back("Warning: " + warning);
   description.seconds = clock.seconds();
   description.settings = RecordOfTracking(camera, settings.resolved);
