@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "sim/world/collada_text.h"
+#include "sim/world/fbx_text.h"
 #include "sim/world/mesh_readers.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/files.h"
@@ -61,6 +62,7 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
     }
     files_.Opened(file, stream->FileSize());
     if (LowerExtension(file) == ".dae") return Collada(file);
+    if (LowerExtension(file) == ".fbx") warnings_ = FbxWarnings(base::ReadFile(file).value_or(""));
     if (LowerExtension(file) == ".stl" && IsOfMagics(*stream)) return MagicsStl(file);
     return new BoundedStream(std::move(stream));  // Close() deletes it
   }

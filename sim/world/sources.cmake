@@ -1,6 +1,7 @@
 target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/assimp_reader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/collada_text.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/fbx_text.cpp
   ${CMAKE_CURRENT_LIST_DIR}/file_cameras.cpp
   ${CMAKE_CURRENT_LIST_DIR}/gltf_file.cpp
   ${CMAKE_CURRENT_LIST_DIR}/gltf_material.cpp

@@ -47,6 +47,7 @@ void UseLargePagesForMatrices() {
 
 }  // namespace vobench
 
+#ifndef VOBENCH_SANITIZED  // the sanitizers have their own
 namespace {
 
 void* Checked(void* block, std::size_t size) {
@@ -66,3 +67,4 @@ void operator delete(void* block) noexcept { std::free(block); }
 void operator delete(void* block, std::size_t) noexcept { std::free(block); }
 void operator delete(void* block, std::align_val_t) noexcept { std::free(block); }
 void operator delete(void* block, std::size_t, std::align_val_t) noexcept { std::free(block); }
+#endif

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
 #include <glm/gtc/quaternion.hpp>
 #include <numbers>
 #include <sstream>
@@ -17,6 +16,7 @@
 #include "tools/base/files.h"
 #include "tools/base/text.h"
 #include "tools/bench/import/import.h"
+#include "tools/bench/import/urdf.h"
 
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpedantic"
@@ -50,14 +50,6 @@ glm::dquat RawFromYUp(const fs::path& file) {
   return text.compare(axis, 4, "X_UP") == 0 ? glm::dquat(kHalf, 0, 0, -kHalf) : glm::dquat(1, 0, 0, 0);
 }
 
-// All elements below one.
-void ForEachElement(tinyxml2::XMLElement& of, const std::function<void(tinyxml2::XMLElement&)>& call) {
-  for (auto* child = of.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
-    call(*child);
-    ForEachElement(*child, call);
-  }
-}
-
 // Messages of the URDF reader.
 class UrdfMessages : public console_bridge::OutputHandler {
  public:
@@ -65,7 +57,6 @@ class UrdfMessages : public console_bridge::OutputHandler {
   std::vector<std::string> all;
 };
 
-constexpr char kUnknownShape[] = "a shape that is none of box, sphere, cylinder, plane and mesh is left out";
 constexpr char kModelsRemedy[] = "; --models names folders of models, fetched before";
 
 class Reader {
@@ -124,60 +115,7 @@ class Reader {
             fmt::format("<{}>: '{}' has commas: numbers have points, and blanks between them", element.Name(), text));
     });
     if (!problems_.empty()) throw std::runtime_error(base::Join({problems_.begin(), problems_.end()}, "\n"));
-    if (name == "robot") urdf_ = ReadableUrdf(xml);
-  }
-
-  // Text of a URDF as libsdformat takes it: that leaves out links without inertia or mass, and all visuals of a link
-  // that has one of an unknown shape; textures it makes black.
-  std::string ReadableUrdf(tinyxml2::XMLDocument& xml) {
-    std::vector<tinyxml2::XMLElement*> unknown, textures;
-    ForEachElement(*xml.RootElement(), [&](tinyxml2::XMLElement& element) {
-      const std::string name = element.Name();
-      bool is_macro = name.starts_with("xacro:");
-      for (const auto* a = element.FirstAttribute(); a != nullptr; a = a->Next())
-        is_macro = is_macro || std::string_view(a->Value()).find("${") != std::string_view::npos;
-      if (is_macro)
-        throw std::runtime_error(fmt::format("{}:{}: is xacro, not URDF: expand it (`xacro {} > robot.urdf`)",
-                                             file_.string(), element.GetLineNum(), file_.filename().string()));
-      if (name == "texture") textures.push_back(&element);
-      if (name != "visual") return;
-      const auto* geometry = element.FirstChildElement("geometry");
-      const auto* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
-      const std::string kind = shape == nullptr ? "none" : shape->Name();
-      if (kind == "box" || kind == "sphere" || kind == "cylinder" || kind == "mesh") return void(++urdf_visuals_);
-      warnings_.Add(fmt::format("{}:{}: ", file_.string(), element.GetLineNum()), kUnknownShape);
-      unknown.push_back(&element);
-    });
-    for (tinyxml2::XMLElement* texture : textures) {
-      tinyxml2::XMLElement* const material = texture->Parent()->ToElement();
-      warnings_.Add(fmt::format("{}:{}: ", file_.string(), texture->GetLineNum()),
-                    "a texture of URDF is left out: grey");
-      material->DeleteChild(texture);
-      if (material->FirstChildElement("color") == nullptr)
-        material->InsertNewChildElement("color")->SetAttribute("rgba", "0.7 0.7 0.7 1");
-    }
-    ForEachElement(*xml.RootElement(), [](tinyxml2::XMLElement& element) {
-      std::istringstream numbers(std::string(element.Name()) == "color" && element.Attribute("rgba") != nullptr
-                                     ? element.Attribute("rgba")
-                                     : "");
-      if (glm::dvec4 c; numbers >> c.r >> c.g >> c.b >> c.a) {  // libsdformat divides by 0.8
-        c *= glm::dvec4(0.8, 0.8, 0.8, 1);
-        element.SetAttribute("rgba", fmt::format("{} {} {} {}", c.r, c.g, c.b, c.a).c_str());
-      }
-    });
-    for (tinyxml2::XMLElement* visual : unknown) visual->Parent()->DeleteChild(visual);
-    for (auto* link = xml.RootElement()->FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
-      if (link->Attribute("name", "world") != nullptr) continue;
-      while (auto* const given = link->FirstChildElement("inertial")) link->DeleteChild(given);
-      auto* const inertial = link->InsertNewChildElement("inertial");
-      inertial->InsertNewChildElement("mass")->SetAttribute("value", 1);
-      auto* const inertia = inertial->InsertNewChildElement("inertia");
-      for (const char* name : {"ixx", "iyy", "izz", "ixy", "ixz", "iyz"})
-        inertia->SetAttribute(name, name[1] == name[2] ? 1 : 0);
-    }
-    tinyxml2::XMLPrinter printer;
-    xml.Print(&printer);
-    return printer.CStr();
+    if (name == "robot") urdf_ = ReadableUrdf(file_, xml, urdf_visuals_, warnings_);
   }
 
   // Of a URDF libsdformat gives "urdf file" instead of a file.

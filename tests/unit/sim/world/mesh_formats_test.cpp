@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/fbx_text.h"
 #include "sim/world/scene.h"
 #include "tests/unit/sim/world/files.h"
 
@@ -273,6 +274,24 @@ TEST(MeshFormats, BinaryFbx) {
   const Scene z_up = load({metre, Setting("UpAxis", 2), Setting("UpAxisSign", 1), Setting("FrontAxis", 1),
                            Setting("FrontAxisSign", -1), Setting("CoordAxis", 0), Setting("CoordAxisSign", 1)});
   EXPECT_THAT(z_up.meshes.at(0).positions, testing::Contains(glm::vec3(11, 3, -2)));
+}
+
+// Properties that assimp leaves out and that change the picture, in both encodings.
+TEST(MeshFormats, FbxWarnings) {
+  const Folder folder;
+  const auto warnings = [&](const std::vector<Record>& settings) {
+    return LoadScene(WorldOf(folder.Write("t.fbx", FbxTriangle(settings)))).warnings;
+  };
+  EXPECT_THAT(warnings({Setting("WrapModeU", 0), Setting("Show", 1), Setting("UnShow", 0)}), testing::IsEmpty());
+  EXPECT_THAT(warnings({Setting("WrapModeV", 1)}), testing::ElementsAre(testing::HasSubstr("WrapMode 1")));
+  EXPECT_THAT(warnings({Setting("Show", 0)}), testing::ElementsAre(testing::HasSubstr("hidden objects are drawn")));
+  EXPECT_THAT(warnings({{"P", {Text("LodGroup")}, {}}}), testing::ElementsAre(testing::HasSubstr("levels of detail")));
+  const std::string text = "; FBX 7.4.0 project file\nP: \"Visibility\", \"Visibility\", \"\", \"A\", 0\n";
+  EXPECT_THAT(FbxWarnings(text), testing::ElementsAre("hidden objects are drawn"));
+  EXPECT_THAT(
+      FbxWarnings("P: \"Visibility\", \"Visibility\", \"\", \"A\", 1\nP: \"WrapModeU\", \"enum\", \"\", \"\",0"),
+      testing::IsEmpty());
+  EXPECT_THAT(FbxWarnings(std::string("Kaydara FBX Binary  S\x04\0\0\0Show", 29)), testing::IsEmpty()) << "cut off";
 }
 
 // COLLADA of 3ds Max: a coordinate set with a name that is bound nowhere, and blanks ahead of numbers.
