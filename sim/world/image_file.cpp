@@ -62,13 +62,14 @@ DecodedImage DecodeTga(Bytes file, bool with_alpha) {
   const std::size_t size = palette ? 1 : entry, colors = 18 + file[0], first_color = word(3),
                     color_count = file[1] ? word(5) : 0;
   std::size_t at = colors + color_count * (file[1] != 0 ? (file[7] + 7u) / 8 : 0);
-  DecodedImage image(cv::Mat(height, width, CV_8UC3));
-  const std::size_t pixels = image.rgb.size() / 3;
-  const bool has_alpha = with_alpha && entry == 4 && type != 3 && (palette || (file[17] & 15) != 0);
-  if (has_alpha) image.alpha.resize(pixels);
   const auto need = [&](std::size_t from, std::size_t count) {
     if (from > file.size() || count > file.size() - from) throw std::runtime_error("truncated TGA");
   };
+  const std::size_t pixels = word(12) * word(14);
+  need(at, runs ? (pixels + 127) / 128 * (1 + size) : pixels * size);  // a packet has 128 pixels at most
+  DecodedImage image(cv::Mat(height, width, CV_8UC3));
+  const bool has_alpha = with_alpha && entry == 4 && type != 3 && (palette || (file[17] & 15) != 0);
+  if (has_alpha) image.alpha.resize(pixels);
   std::size_t left = 0, repeated = 0;  // of the packet
   for (std::size_t i = 0; i < pixels; ++i) {
     if (runs && left == 0) {
