@@ -177,7 +177,7 @@ void Visit(V& v, PathKind kind, PathMotion& p) {
   } else if (kind == PathKind::half_sphere) {
     v.Required("sweep", p.azimuth.size, {Unit::angle, Range{0, kTurn}, "swings by half of it to both sides"});
     v.Required("rise", p.elevation.size, {Unit::angle, Range{0, kTurn / 4}, "half_sphere: climbs, and comes back"});
-    v.Required("rise_period", p.elevation.period_s, {Unit::time, period, "in this time"});
+    v.Required("rise_period", p.elevation.period_s, {Unit::time, period, "half_sphere: period of the climb"});
     p.azimuth.size /= 2;
     p.elevation.kind = Swing::Kind::there_and_back;
   } else if (kind == PathKind::rpy) {

@@ -28,9 +28,9 @@ void Visit(V& v, OpticsParams& p) {
   v("aperture", p.aperture_m, {Unit::length, Range{0, 1}, "diameter of the entrance pupil; 0: all is in focus"});
   v("focus", p.focus_m, {Unit::length, Range::Positive(), "Z of the plane in focus"});
   v("natural_vignetting", p.natural_vignetting, {"cos^4 of the angle from the optical axis"});
-  v("vignetting_2", p.vignetting_2, {"and 1 + v2 r^2 + v4 r^4 + v6 r^6,"});
-  v("vignetting_4", p.vignetting_4, {"r: distance from the principal point"});
-  v("vignetting_6", p.vignetting_6, {"in half diagonals of the image"});
+  v("vignetting_2", p.vignetting_2, {"v2 of 1 + v2 r^2 + v4 r^4 + v6 r^6, r in half diagonals"});
+  v("vignetting_4", p.vignetting_4, {"v4 of the same"});
+  v("vignetting_6", p.vignetting_6, {"v6 of the same"});
   v("psf_sigma", p.psf_sigma_px, {Unit::pixel, Range{0, 5}, "of the lens's Gaussian point-spread function"});
 }
 
@@ -58,9 +58,9 @@ template <class V>
 void Visit(V& v, ProcessingParams& p) {
   const Range coefficient{-8, 8}, exponent{0.2, 5};
   v("white_balance", p.white_balance, {Range{0.1, 10}, "factors of red, green and blue, in linear light"});
-  v("color_red", p.color_red, {coefficient, "rows of the colour matrix, in linear light: red,"});
-  v("color_green", p.color_green, {coefficient, "green,"});
-  v("color_blue", p.color_blue, {coefficient, "blue of the balanced red, green, blue"});
+  v("color_red", p.color_red, {coefficient, "row of the colour matrix that gives red, in linear light"});
+  v("color_green", p.color_green, {coefficient, "row of the colour matrix that gives green"});
+  v("color_blue", p.color_blue, {coefficient, "row of the colour matrix that gives blue"});
   v("black_clip", p.black_clip,
     {Range{.min = 0, .max = 1, .below_max = true}, "code after the response that is black"});
   v("contrast", p.contrast, {Range{0.1, 10}, "slope of the tone curve above it, up to white"});
@@ -144,8 +144,9 @@ void Visit(V& v, SensorParams& p) {
   v("photo_response_sigma", p.photo_response_sigma, {share, "fixed pattern of the sensitivity (PRNU), as a fraction"});
   v("dark_current", p.dark_current_e_s, {Unit::electron_rate, not_negative, "mean dark current"});
   v("dark_sigma", p.dark_sigma_e_s, {Unit::electron_rate, not_negative, "fixed pattern of the dark current (DSNU)"});
-  v("hot_pixels", p.hot_pixels, {share, "share of the pixels with a dark current that is"});
-  v("hot_current", p.hot_current_e_s, {Unit::electron_rate, not_negative, "exponentially distributed with this mean"});
+  v("hot_pixels", p.hot_pixels, {share, "share of hot pixels"});
+  v("hot_current", p.hot_current_e_s,
+    {Unit::electron_rate, not_negative, "mean of the dark current of hot pixels, exponentially distributed"});
   v("read_noise", p.read_noise_e, {Unit::electrons, not_negative, "standard deviation; 0: none"});
   v("gain", p.gain, {Range{1, 1000}, "analogue: full_well / gain electrons fill the scale"});
   v("black_level", p.black_level, {Range{.min = 0, .max = 1, .below_max = true}, "offset, as a fraction of the scale"});

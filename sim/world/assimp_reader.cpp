@@ -18,6 +18,7 @@
 #include "sim/world/collada_text.h"
 #include "sim/world/fbx_text.h"
 #include "sim/world/mesh_readers.h"
+#include "sim/world/texture.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/files.h"
 
@@ -242,6 +243,8 @@ class Converter {
     out.colors = Copied<glm::vec4>(in.mColors[0], in.mNumVertices);
     if (extension_ == ".amf" && std::ranges::all_of(out.colors, [](const glm::vec4& c) { return c == glm::vec4(0); }))
       out.colors.clear();  // assimp's, of a file without colours
+    if (!out.colors.empty() && (extension_ == ".amf" || extension_ == ".x3d"))
+      to_.materials[in.mMaterialIndex].base_color = glm::vec4(1);  // assimp's 0.6; they take the colour's place
     if (const auto N = mesh_to_root_.find(index); in.HasBones() && N != mesh_to_root_.end()) Pose(in, N->second, out);
     for (unsigned set = 0; set < AI_MAX_NUMBER_OF_TEXTURECOORDS; ++set) {
       if (!in.HasTextureCoords(set)) continue;
@@ -269,6 +272,9 @@ class Converter {
       if (!is_replaced) in.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse);
       color = {diffuse.r, diffuse.g, diffuse.b, 1};
     }
+    const bool is_default = color.r == 0.6f && color.g == 0.6f && color.b == 0.6f;  // assimp's, of STL
+    if (extension_ == ".3mf" || (extension_ == ".stl" && !is_default))
+      for (unsigned i = 0; i < 3; ++i) color[i] = static_cast<float>(SrgbToLinear(color[i]));
     out.base_color = {color.r, color.g, color.b, color.a};
     aiColor3D emission(0, 0, 0);
     in.Get(AI_MATKEY_COLOR_EMISSIVE, emission);
@@ -335,8 +341,11 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
   const aiScene* scene = importer.ReadFile(files.mesh().string(), aiProcess_ValidateDataStructure);
   if (scene != nullptr) import.problem = CountProblem(*scene);  // too large a scene is not processed
   if (scene != nullptr && import.problem.empty()) {
-    scene =
-        importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+    // assimp (5.2) joins vertices of different colours.
+    const bool has_colors = std::any_of(scene->mMeshes, scene->mMeshes + scene->mNumMeshes,
+                                        [](const aiMesh* mesh) { return mesh->HasVertexColors(0); });
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
+                                         (has_colors ? 0U : unsigned{aiProcess_JoinIdenticalVertices}));
     if (scene != nullptr) import.problem = CountProblem(*scene);
   }
   if (scene == nullptr) {

@@ -16,15 +16,28 @@ bool IsDigits(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
+constexpr std::string_view kBlanks = " \t\r\n";
+
+// Without the blanks at its beginning.
+std::string_view Trimmed(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(kBlanks), text.size()));
+}
+
 // An attribute's value in a tag; empty: none.
 std::string_view Attribute(std::string_view tag, const std::string& name) {
-  for (const char quote : {'"', '\''}) {
-    const std::size_t at = tag.find(' ' + name + '=' + quote);
-    if (at == std::string_view::npos) continue;
-    const std::string_view rest = tag.substr(at + name.size() + 3);
-    return rest.substr(0, rest.find(quote));
+  for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
+    std::string_view rest = Trimmed(tag.substr(at + name.size()));
+    if (at == 0 || kBlanks.find(tag[at - 1]) == std::string_view::npos || !rest.starts_with('=')) continue;
+    rest = Trimmed(rest.substr(1));
+    if (rest.empty() || (rest[0] != '"' && rest[0] != '\'')) continue;
+    return rest.substr(1, rest.find(rest[0], 1) - 1);
   }
   return {};
+}
+
+// Whether it is a tag of this name.
+bool IsTag(std::string_view tag, std::string_view name) {
+  return tag.starts_with(name) && tag.size() > name.size() && kBlanks.find(tag[name.size()]) != std::string_view::npos;
 }
 
 template <class Call>
@@ -38,6 +51,7 @@ void ForEachTag(std::string_view text, const Call& call) {
 // several.
 struct UvSets {
   std::map<std::string, std::string, std::less<>> of_name;
+  bool has_two = false;  // of one name, in different instances
   std::map<std::string, std::size_t, std::less<>> place;
 };
 
@@ -48,9 +62,12 @@ UvSets SetsOf(std::string_view text) {
   };
   std::set<std::string_view, decltype(by_number)> here;
   ForEachTag(text, [&](std::string_view tag) {
-    if (tag.starts_with("<bind_vertex_input ") && Attribute(tag, "input_semantic") == "TEXCOORD")
-      sets.of_name.try_emplace(std::string(Attribute(tag, "semantic")), Attribute(tag, "input_set"));
-    if (tag.starts_with("<input ")) {
+    if (IsTag(tag, "<bind_vertex_input") && Attribute(tag, "input_semantic") == "TEXCOORD") {
+      const std::string_view set = Attribute(tag, "input_set");
+      const auto [known, is_new] = sets.of_name.try_emplace(std::string(Attribute(tag, "semantic")), set);
+      sets.has_two = sets.has_two || (!is_new && known->second != set);
+    }
+    if (IsTag(tag, "<input")) {
       const std::string_view set = Attribute(tag, "set");
       if (Attribute(tag, "semantic") == "TEXCOORD") here.insert(set.empty() ? "0" : set);
       return;
@@ -92,7 +109,7 @@ std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& wa
       append("<diffuse><color>0 0 0 1</color></diffuse>");  // assimp's default is 0.6
       done = at;
     }
-    const std::string_view name = tag.starts_with("<texture ") ? Attribute(tag, "texcoord") : "";
+    const std::string_view name = IsTag(tag, "<texture") ? Attribute(tag, "texcoord") : "";
     if (name.empty()) return;
     const auto at = static_cast<std::size_t>(name.data() - text.data());
     const auto bound = sets.of_name.find(name);
@@ -104,6 +121,13 @@ std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& wa
     if (set.empty() && !sets.place.empty()) unbound.insert("'" + std::string(name) + "'");
   });
   append(text.substr(done));
+  if (sets.has_two) warnings.push_back("a name of texture coordinates is bound to several sets: the first is used");
+  const auto has = [&](std::string_view part) { return text.find(part) != std::string_view::npos; };
+  for (const std::string wrap : {"CLAMP", "MIRROR", "BORDER", "NONE"})
+    if (has("<wrap_s>" + wrap) || has("<wrap_t>" + wrap))
+      warnings.push_back("a texture whose wrapping is " + wrap + " repeats");
+  if (has("=\"RGB_ZERO\"")) warnings.push_back("transparency of the kind RGB_ZERO is taken for A_ONE");
+  if (has("<param ref=")) warnings.push_back("colours that are parameters (<param ref>) are not read");
   if (!unbound.empty())
     warnings.push_back("texture coordinates that are bound to no set (bind_vertex_input) are those of the first: " +
                        base::Join({unbound.begin(), unbound.end()}, ", "));

@@ -65,6 +65,9 @@ std::vector<std::string> FbxWarnings(std::string_view file) {
   if (has("Show", 0) || has("Visibility", 0)) warnings.push_back("hidden objects are drawn");
   if (file.find(is_binary ? std::string_view("S\x08\0\0\0LodGroup", 13) : "\"LodGroup\"") != std::string_view::npos)
     warnings.push_back("all levels of detail (LodGroup) are drawn");
+  if (file.find(is_binary ? std::string_view("S\x0e\0\0\0LayeredTexture", 19) : "LayeredTexture:") !=
+      std::string_view::npos)
+    warnings.push_back("layered textures may be left out: bake them into one");
   return warnings;
 }
 

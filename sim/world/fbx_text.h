@@ -7,8 +7,8 @@
 
 namespace sim {
 
-// Warnings of textures that are clamped (WrapMode), of hidden objects (Show, Visibility) and of levels of detail: all
-// change the picture. file: binary or text.
+// Warnings of textures that are clamped (WrapMode) or layered, of hidden objects (Show, Visibility) and of levels of
+// detail: all change the picture. file: binary or text.
 std::vector<std::string> FbxWarnings(std::string_view file);
 
 }  // namespace sim

@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "sim/world/gltf_file.h"
+#include "sim/world/image_file.h"
 #include "sim/world/mesh_readers.h"
 #include "sim/world/texture_file.h"
 #include "tools/base/child_process.h"
@@ -82,6 +83,10 @@ MeshImport Import(const fs::path& file, const std::vector<fs::path>& folders, bo
   const std::map<std::string_view, void (*)(MeshFiles&, MeshImport&)> readers = {
       {".obj", ReadObj}, {".ply", ReadPly}, {".gltf", gltf}, {".glb", gltf}};
   const auto read = readers.find(extension);
+  std::string head(200, '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
+  import.problem = StandInProblem(base::AsBytes(head));
+  if (!import.problem.empty()) return import;
   try {
     (read == readers.end() ? ReadByAssimp : read->second)(files, import);
     if (import.problem.empty()) import.problem = CountsOf(import.scene).Problem();

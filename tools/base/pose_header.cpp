@@ -34,6 +34,8 @@ std::string NameOf(std::string_view cell) {
       name += '_';
   }
   if (name.ends_with('_')) name.pop_back();
+  const std::size_t index = cell.find('[') + 1;  // q[0] of PX4
+  if (index > 0 && index < cell.size() && IsDigit(cell[index])) name += cell[index];
   if (name.ends_with("_m")) name.resize(name.size() - 2);
   for (const auto& [other, ours] : {std::pair{"qr", "qw"}, {"qs", "qw"}, {"qi", "qx"}, {"qj", "qy"}, {"qk", "qz"}})
     if (name == other) return ours;
@@ -94,11 +96,13 @@ std::optional<std::size_t> AxisOf(const std::string& name) {
 // The part below a second of a stamp in two columns.
 bool IsNanoseconds(std::string_view name) { return EndsInAny(name, {"nsec", "nsecs", "nanosec"}); }
 
+bool IsSeconds(std::string_view name) { return EndsInAny(name, {"sec", "secs", "seconds"}); }
+
 // Rank of a name as that of the stamps; 0: it is none. That of a message's header comes before the time of its arrival,
-// and both before whole seconds.
-int RankAsStamp(const std::string& name) {
+// and both before whole seconds. is_split: nanoseconds have a column.
+int RankAsStamp(const std::string& name, bool is_split) {
   if (IsNanoseconds(name)) return 0;
-  if (EndsInAny(name, {"sec", "secs", "seconds"})) return 1;
+  if (IsSeconds(name) && !(is_split && HasAny(name, {"stamp"}))) return 1;
   return HasAny(name, {"stamp"}) ? 3 : name == "t" || HasAny(name, {"time"}) ? 2 : 0;
 }
 
@@ -151,8 +155,9 @@ Named Assign(std::span<const std::string> names) {
         return std::optional(name.back() == 'w' ? kW : 4 + static_cast<std::size_t>(name.back() - 'x'));
     return AxisOf(name);
   };
+  const auto below = std::ranges::find_if(names, IsNanoseconds);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (const int r = RankAsStamp(names[i]); r > rank) {
+    if (const int r = RankAsStamp(names[i], below != names.end()); r > rank) {
       found.columns[kStamp] = i;
       rank = r;
     } else if (const auto axis = axis_of(names[i])) {
@@ -160,7 +165,7 @@ Named Assign(std::span<const std::string> names) {
       if (!found.columns[*axis]) found.columns[*axis] = i;
     }
   }
-  if (const auto below = std::ranges::find_if(names, IsNanoseconds); rank == 1 && below != names.end())
+  if (below != names.end() && found.columns[kStamp] && IsSeconds(names[*found.columns[kStamp]]))
     found.nanoseconds = static_cast<std::size_t>(below - names.begin());
   if (found.columns[1] || found.columns[2] || found.columns[3]) return found;
   if (const std::vector<std::string> others = StemsOf(names, false); others.size() == 1) {  // such as cam_x
@@ -172,7 +177,24 @@ Named Assign(std::span<const std::string> names) {
   return found;
 }
 
+std::string Lower(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return lower;
+}
+
+// Unit of positions that is not the metre; empty: none.
+std::string UnitOfLength(const std::string& line) {
+  for (const std::string unit : {"mm", "cm", "dm", "km"})
+    if (HasAny(line, {"[" + unit + "]", "(" + unit + ")"})) return unit;
+  return "";
+}
+
 }  // namespace
+
+bool StatesRealPartFirst(std::string_view comment) {
+  return HasAny(Lower(comment), {"wxyz", "w x y z", "w, x, y, z", "qw qx", "qw, qx", "scalar first", "scalar-first"});
+}
 
 std::vector<Word> Cells(std::string_view line) {
   for (const char separator : {';', ','}) {
@@ -227,7 +249,7 @@ std::optional<PoseHeader> ReadPoseHeader(std::string_view written, std::string& 
   }
   if (!found.is_complete() || found.has_two_poses) {
     const auto has = [&](std::size_t i) { return found.columns[i].has_value(); };
-    const auto is_w = [](const std::string& name) { return name == "q0" || name.ends_with("wxyz"); };
+    const auto is_w = [](const std::string& name) { return name == "q0" || name == "q4" || name.ends_with("wxyz"); };
     const bool has_w = has(kW) || std::ranges::any_of(names, is_w);
     std::string missing;
     for (std::size_t i = 0; i < PoseHeader::kPose; ++i)
@@ -235,8 +257,13 @@ std::optional<PoseHeader> ReadPoseHeader(std::string_view written, std::string& 
     const std::string all = ": name the columns timestamp tx ty tz qx qy qz qw, in their order";
     if (found.is_complete())
       problem = "the header names two poses a line: keep one";
-    else if (has_w && (is_prose ? has(1) && has(2) && has(3) : has(1) || has(4)))
+    else if ((has_w && (is_prose ? has(1) && has(2) && has(3) : has(1) || has(4))) ||
+             (!is_prose && has(kStamp) && has(1) && has(2) && has(3)))
       problem = "the header names no column for " + missing + all;
+    return std::nullopt;
+  }
+  if (const std::string unit = UnitOfLength(Lower(line)); !unit.empty()) {
+    problem = "the header states positions in " + unit + ": write metres";
     return std::nullopt;
   }
   std::ranges::transform(found.columns, header.columns.begin(), [](const auto& column) { return *column; });

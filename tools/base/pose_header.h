@@ -16,6 +16,9 @@ namespace base {
 // them (some may be empty, the last is not); else its words.
 std::vector<Word> Cells(std::string_view line);
 
+// Whether a comment says that a quaternion begins with w.
+bool StatesRealPartFirst(std::string_view comment);
+
 struct PoseHeader {
   static constexpr std::size_t kPose = 8;
   std::array<std::size_t, kPose> columns{};

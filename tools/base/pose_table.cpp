@@ -73,10 +73,15 @@ std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
   if (IsComment(words[0].text) || is_header) {
     if (is_first_) problem = KindOf(line);
     if (is_first_ && problem.empty() && !header_) header_ = ReadPoseHeader(line, problem);
+    w_is_first_ = w_is_first_ || StatesRealPartFirst(line);
     return {};
   }
   // EuRoC's table without its header: its stamps are whole numbers.
   if (is_first_ && !header_ && words.size() == kEuroc && ParseWhole(words[0].text)) is_euroc_ = true;
+  if (is_first_ && !header_ && w_is_first_)
+    problem = "a comment says that w comes first: name the columns (# timestamp tx ty tz qw qx qy qz)";
+  if (is_first_ && !header_ && words.size() == kEuroc && words[16].text == "1" && words[15].text == "0")
+    problem = "seventeen numbers a line are times and matrices: write a quaternion (timestamp tx ty tz qx qy qz qw)";
   words = InOrder(std::move(words), problem);
   if (is_first_ && problem.empty()) problem = OtherKind(line, words, Stamp(words[0]));
   is_first_ = false;

@@ -29,7 +29,7 @@ class PoseTable {
  private:
   std::vector<Word> InOrder(std::vector<Word> words, std::string& problem);
 
-  bool is_euroc_, is_first_ = true;
+  bool is_euroc_, is_first_ = true, w_is_first_ = false;
   std::string nanoseconds_;  // of the last row's stamp, where they have a column
   std::optional<PoseHeader> header_;
 };

@@ -1,5 +1,5 @@
 // Settings of the odometry: one struct per component, with its field table (key in `odometry:`, unit, range, meaning).
-// Defaults are those of docs/algorithm.md, section 10; the paper's (Section V-A) are systems rb2pf_paper and
+// Defaults are those of docs/algorithm.md, section 11; the paper's (Section V-A) are systems rb2pf_paper and
 // rbpf_paper.
 #pragma once
 
@@ -146,7 +146,8 @@ void Visit(V& v, ScoreParams& p) {
   v("gate", p.gate, {Range::Positive(), "G: largest squared Mahalanobis distance of a match"});
   v.Renamed("blind_share", "min_found_ratio");
   v("min_found_ratio", p.min_found_ratio,
-    {Range{.min = 0, .max = 1, .below_max = true}, "a frame with fewer found of those searched changes no score"});
+    {Range{.min = 0, .max = 1, .below_max = true},
+     "below this share found of those searched, scores are only predicted, by (44)"});
   v("grace_frames", p.grace_frames, {Range::AtLeast(0), "a younger landmark is not deleted for its score"});
 }
 

@@ -1,5 +1,5 @@
 // Moments of the mixture over particles, the filter's answer: covariance = sum_i w_i (P_i + (mu_i - mu)(mu_i - mu)').
-// Source:  docs/algorithm.md, section 9.
+// Source:  docs/algorithm.md, section 1.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // Nearly-constant-velocity model over one time step, (6)-(9): s_pf = (p, delta), delta the rotation since the last
-// frame, s_kf = (v, w). One block of 3 axes each (docs/algorithm.md, section 1).
+// frame, s_kf = (v, w). One block of 3 axes each (docs/algorithm.md, section 2).
 // Shapes:  F and Q are 12 x 12 in the order (p, delta, v, w); the noise of p and v (and of delta and w) is correlated.
 #pragma once
 

@@ -150,6 +150,18 @@ void ReadOpenCv(settings::Section root, Camera& camera) {
   RequireSize(root, spelt({"image_width", "image_Width"}), spelt({"image_height", "image_Height"}), camera);
   int fisheye = 0;
   if (root.Read("fisheye_model", fisheye) && fisheye != 0) camera.lens = Lens::fisheye;
+  for (const char* key : {"fisheye", "model", "camera_model", "distortion_model", "distortion_type"}) {
+    std::string model;
+    if (!root.Has(key) || !root.Read(key, model)) continue;
+    const bool is_fisheye =
+        model == "true" || model == "1" || model == "fisheye" || model == "equidistant" || model == "KANNALA_BRANDT";
+    const bool is_plain = model == "false" || model == "0" || model == "pinhole" || model == "PINHOLE" ||
+                          model == "plumb_bob" || model == "radtan" || model == "radial_tangential" || model == "none";
+    if (is_fisheye) camera.lens = Lens::fisheye;
+    if (!is_fisheye && !is_plain && std::string_view(key) != "model")  // which may be a name
+      root.Reject(
+          key, std::string("'") + key + "' is '" + model + "': pinhole (plumb_bob) and fisheye (equidistant) are read");
+  }
   const std::string matrix_key = spelt(kMatrixKeys);
   if (const auto matrix = OpenCvMatrix(root, matrix_key)) {
     if (const std::string problem = SetMatrix(*matrix, camera); !problem.empty()) root.Reject(matrix_key, problem);

@@ -7,6 +7,7 @@
 namespace base {
 namespace {
 
+using testing::AnyOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -60,10 +61,7 @@ TEST(PoseTable, TakesTheOrderOfItsHeader) {
         "__time,/vo/orientation/w,/vo/orientation/x,/vo/orientation/y,/vo/orientation/z,/vo/position/x,/vo/position/y,"
         "/vo/position/z\n7.5,9,4,5,6,1,2,3",
         ",timestamp,tx,ty,tz,qw,qx,qy,qz\n0,7.5,1,2,3,9,4,5,6",
-        "\"t\",\"x\",\"y\",\"z\",\"qx\",\"qy\",\"qz\",\"qw\"\n\"7.5\",\"1\",\"2\",\"3\",\"4\",\"5\",\"6\",\"9\"",
-        "Time,header.stamp.secs,header.stamp.nsecs,header.frame_id,pose.position.x,pose.position.y,pose.position.z,"
-        "pose.orientation.x,pose.orientation.y,pose.orientation.z,pose.orientation.w\n7.5,7,500000000,,1,2,3,4,5,6,"
-        "9"}) {
+        "\"t\",\"x\",\"y\",\"z\",\"qx\",\"qy\",\"qz\",\"qw\"\n\"7.5\",\"1\",\"2\",\"3\",\"4\",\"5\",\"6\",\"9\""}) {
     EXPECT_THAT(LastOf(text), ElementsAre("7.5", "1", "2", "3", "4", "5", "6", "9")) << text;
   }
 }
@@ -74,6 +72,9 @@ TEST(PoseTable, JoinsSecondsAndNanoseconds) {
     EXPECT_EQ(LastOf(header + "\n8,1583836591,82590976,1,2,3,4,5,6,9").at(0), "1583836591.082590976") << header;
     EXPECT_EQ(LastOf(header + "\n8,7,0,1,2,3,4,5,6,9\n8,7,500000000,1,2,3,4,5,6,9").at(0), "7.500000000");
   }
+  const std::string of_ros =
+      "Time,header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw\n7.6,7,500000000,1,2,3,4,5,6,9";
+  EXPECT_EQ(LastOf(of_ros).at(0), "7.500000000") << "not the time of arrival";
   EXPECT_EQ(LastOf("# counter sec nsec x y z qx qy qz qw\n8 7 40 1 2 3 4 5 6 9").at(0), "7.000000040");
 }
 
@@ -106,6 +107,19 @@ TEST(PoseTable, NanosecondsWhereTheTableHasThem) {
   EXPECT_EQ(LastOf("#t [ns],x,y,z,qw,qx,qy,qz\n12.5,1,2,3,9,4,5,6").at(0), "12.5") << "seconds, the header kept";
   EXPECT_EQ(LastOf("%time x y z qx qy qz qw\n75 1 2 3 4 5 6 9").at(0), "75") << "a comment of MATLAB's";
   EXPECT_THAT(LastOf("75 1 2 3 9 4 5 6", true), ElementsAre("75e-9", "1", "2", "3", "4", "5", "6", "9"));
+}
+
+TEST(PoseTable, RefusesUnitsAndOrdersThatItDoesNotTake) {
+  const std::string row = "\n7,1,2,3,4,5,6,9";
+  for (const std::string header : {"t,x(mm),y(mm),z(mm),qx,qy,qz,qw", "# t, tx [MM], ty [MM], tz [MM], qx, qy, qz, qw"})
+    EXPECT_THAT(LastOf(header + row), ElementsAre(HasSubstr("positions in mm"))) << header;
+  for (const std::string header :
+       {"timestamp,x,y,z,q[0],q[1],q[2],q[3]", "# t x y z q1 q2 q3 q4", "time,x,y,z,a,b,c,d", "# ts, xyz, wxyz",
+        "# format: time position quaternion(wxyz)", "# quaternion is scalar first\n# timestamp tx ty tz quat"})
+    EXPECT_THAT(LastOf(header + row), ElementsAre(AnyOf(HasSubstr("names no column"), HasSubstr("w comes first"))))
+        << header;
+  EXPECT_EQ(LastOf("# quaternion: qw qx qy qz\n# timestamp tx ty tz qw qx qy qz\n7 1 2 3 9 4 5 6").at(7), "9");
+  EXPECT_THAT(LastOf("7 1 0 0 1 0 1 0 2 0 0 1 3 0 0 0 1"), ElementsAre(HasSubstr("matrices")));
 }
 
 TEST(PoseTable, RefusesOtherKindsByTheFirstRow) {

@@ -102,6 +102,11 @@ TEST_F(CameraFileForms, MatricesOfOpenCvAndRos) {
        {"scaled.yml", matrix("[917, 0, 734.5, 0, 914.5, 496.75, 0, 0, 2]"), bad},
        {"k21.yaml", matrix("[458.5, 0, 367.25, 7, 457.25, 248.375, 0, 0, 1]") + "\ndistortion_model: plumb_bob\n", bad},
        {"omni.yml", plain + "\nxi: 1.2\n", "omni.yml:5:5: OpenCV's omnidirectional model"},
+       {"sphere.yml", Replaced(plain, "camera_matrix", "M1") + "\ndistortion_model: double_sphere\n",
+        "'distortion_model' is 'double_sphere'"},
+       {"product.yml", plain + "\nmodel: D435\n"},
+       {"model.yml", kSize + "model: fisheye\n" + k + kMatrix + "\n" + d + "[]", "there are 0 numbers"},
+       {"flag.yml", kSize + "fisheye: true\n" + k + kMatrix + "\n" + d + "[]", "there are 0 numbers"},
        {"fisheye.yml", kSize + "fisheye_model: 1\n" + k + kMatrix + "\n" + d + "[]", "there are 0 numbers"},
        {"binned.yaml",
         "width: 752\nheight: 480\ndistortion_model: plumb_bob\nD: " + kLens + "\nK: " + kMatrix +

@@ -335,7 +335,7 @@ TEST(GltfForeign, FilesThatAreNotThere) {
   const Folder folder;
   for (const auto& [text, said] : {std::pair{"version https://git-lfs.github.com/spec/v1\noid", "'git lfs pull'"},
                                    {"<!DOCTYPE html><html>404</html>", "is a web page (HTML)"}}) {
-    for (const char* name : {"m.gltf", "m.glb"})
+    for (const char* name : {"m.gltf", "m.glb", "m.obj", "m.ply", "m.fbx", "m.dae", "m.stl"})
       EXPECT_THAT(ProblemTextOf([&] { LoadScene(WorldOf(folder.Write(name, text))); }), HasSubstr(said)) << name;
     Quad quad;
     quad.folder.Write("p.png", text);

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/world/collada_text.h"
 #include "sim/world/fbx_text.h"
 #include "sim/world/scene.h"
 #include "tests/unit/sim/world/files.h"
@@ -412,6 +413,47 @@ TEST(MeshFormats, StlColoursOfMagics) {
     for (const auto& color : mesh.colors) colors.emplace_back(color);
   EXPECT_THAT(colors, testing::Contains(glm::vec3(1, 0, 0)));
   EXPECT_THAT(colors, testing::Contains(glm::vec3(0, 0, 1)));
+}
+
+// Two facets with a common edge, red and green: no corner has the colour of the other facet.
+TEST(MeshFormats, StlColoursOfFacets) {
+  std::string text(80, ' ');
+  Append<std::uint32_t>(text, {2});
+  for (const int attribute : {0x8000 | 31 << 10, 0x8000 | 31 << 5}) {
+    const float x = attribute == (0x8000 | 31 << 10) ? 1.0f : 0.0f;
+    Append<float>(text, {0, 0, 1, 0, 0, 0, x, 1 - x, 0, 1, 1, 0});
+    text += static_cast<char>(attribute & 255);
+    text += static_cast<char>(attribute >> 8);
+  }
+  const Folder folder;
+  const Scene scene = LoadScene(WorldOf(folder.Write("m.stl", text)));
+  std::vector<glm::vec3> colors;
+  for (const Mesh& mesh : scene.meshes) {
+    for (const glm::uvec3& t : mesh.triangles) {
+      EXPECT_TRUE(mesh.colors[t.x] == mesh.colors[t.y] && mesh.colors[t.y] == mesh.colors[t.z]);
+      colors.emplace_back(mesh.colors[t.x]);
+    }
+  }
+  EXPECT_THAT(colors, testing::UnorderedElementsAre(glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)));
+}
+
+TEST(MeshFormats, ColladaWarnings) {
+  const auto warnings = [](std::string_view text) {
+    std::vector<std::string> all;
+    ColladaForAssimp(text, all);
+    return all;
+  };
+  EXPECT_THAT(warnings("<wrap_s>WRAP</wrap_s>"), IsEmpty());
+  EXPECT_THAT(warnings("<wrap_t>MIRROR</wrap_t>"), testing::ElementsAre(testing::HasSubstr("MIRROR repeats")));
+  const std::string bind = "<bind_vertex_input\tsemantic = 'UV'\n input_semantic='TEXCOORD' input_set='1'/>",
+                    other = "<bind_vertex_input semantic='UV' input_semantic='TEXCOORD' input_set='0'/>";
+  EXPECT_THAT(warnings(bind + bind), IsEmpty());
+  EXPECT_THAT(warnings(bind + other), testing::ElementsAre(testing::HasSubstr("several sets")));
+  const std::string sets = "<input semantic='TEXCOORD' set='0'/><input semantic='TEXCOORD' set='1'/><p>";
+  std::vector<std::string> none;
+  EXPECT_EQ(ColladaForAssimp(sets + bind + "<texture\ntexcoord='UV'/>", none),
+            sets + bind + "<texture\ntexcoord='1'/>");
+  EXPECT_THAT(none, IsEmpty());
 }
 
 // COLLADA with two sets of texture coordinates: the bound one counts, by its number among those of the polygons.
