@@ -187,6 +187,10 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
     entries_.push_back({*stamp_ns, image});
     last_number = number;
   }
+  constexpr std::int64_t kShortest_ns = 1'000'000;
+  if (format.stamp == StampInNanoseconds && problems.empty() && entries_.size() > 1 &&
+      entries_[1].stamp_ns - entries_[0].stamp_ns < kShortest_ns)
+    problems.push_back(list.string() + ": the first frames are less than a millisecond apart: stamps are nanoseconds");
   if (problems.empty() && entries_.empty()) problems.push_back(list.string() + ": no frames");
   if (!problems.empty()) throw std::runtime_error(base::JoinProblems(problems));
 }

@@ -69,6 +69,8 @@ TEST_F(Reader, ReadsTheLayoutOfEuroc) {
   const auto second = reader.Next();
   EXPECT_EQ(second->stamp_ns, 1403636579813555456);
   EXPECT_EQ(second->image.type(), CV_8UC1);
+  std::ofstream(list) << "1403636579763555,1403636579763555584.png\n1403636579813555,1403636579813555456.png\n";
+  EXPECT_NE(ErrorOfOpening().find("less than a millisecond apart"), std::string::npos) << "microseconds";
   std::ofstream(list) << "1.5,a.png\n9223372036854775808,a.png\n7\n";
   const std::string error = ErrorOfOpening();
   EXPECT_NE(error.find(list.string() + ":1: '1.5' is not a time stamp in nanoseconds"), std::string::npos) << error;
