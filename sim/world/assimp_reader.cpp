@@ -63,7 +63,6 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
     }
     files_.Opened(file, stream->FileSize());
     if (LowerExtension(file) == ".dae") return Collada(file);
-    if (LowerExtension(file) == ".fbx") warnings_ = FbxWarnings(base::ReadFile(file).value_or(""));
     if (LowerExtension(file) == ".stl" && IsOfMagics(*stream)) return MagicsStl(file);
     return new BoundedStream(std::move(stream));  // Close() deletes it
   }
@@ -335,6 +334,7 @@ class Converter {
 }  // namespace
 
 void ReadByAssimp(MeshFiles& files, MeshImport& import) {
+  if (LowerExtension(files.mesh()) == ".fbx") import.warnings = FbxWarnings(files.Read(files.mesh()).value_or(""));
   Assimp::Importer importer;
   importer.SetIOHandler(new ImporterFiles(files, import.warnings));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);

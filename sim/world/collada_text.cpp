@@ -91,7 +91,7 @@ std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& wa
   bool skips = false;
   const auto append = [&](std::string_view part) {
     for (const char c : part) {
-      if (c == '<') out.erase(out.find_last_not_of(" \t\r\n") + 1);
+      if (c == '<') out.erase(out.find_last_not_of(kBlanks) + 1);
       skips = c == '>' || (skips && std::isspace(static_cast<unsigned char>(c)) != 0);
       if (!skips || c == '>') out += c;
     }

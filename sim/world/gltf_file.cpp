@@ -154,7 +154,6 @@ void WarnOnce(MeshImport& import, const std::string& what) {
 
 GltfFile::GltfFile(MeshFiles& files, MeshImport& import) : files_(files), import_(import) {
   std::string bytes = files.Read(files.mesh()).value_or(""), text;
-  if (const std::string problem = StandInProblem(base::AsBytes(bytes)); !problem.empty()) Fail(problem);
   if (bytes.starts_with("glTF")) {
     const std::span<const std::uint8_t> all = base::AsBytes(bytes);
     const auto word = [&](std::size_t at) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <span>
 
 namespace base {
 namespace {
@@ -80,7 +81,10 @@ std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
   if (is_first_ && !header_ && words.size() == kEuroc && ParseWhole(words[0].text)) is_euroc_ = true;
   if (is_first_ && !header_ && w_is_first_)
     problem = "a comment says that w comes first: name the columns (# timestamp tx ty tz qw qx qy qz)";
-  if (is_first_ && !header_ && words.size() == kEuroc && words[16].text == "1" && words[15].text == "0")
+  const auto is_last_row = [](const auto& row) {
+    return row[0].text == "0" && row[1].text == "0" && row[2].text == "0" && row[3].text == "1";
+  };
+  if (is_first_ && !header_ && words.size() == kMatrix + 1 && is_last_row(std::span(words).last(4)))
     problem = "seventeen numbers a line are times and matrices: write a quaternion (timestamp tx ty tz qx qy qz qw)";
   words = InOrder(std::move(words), problem);
   if (is_first_ && problem.empty()) problem = OtherKind(line, words, Stamp(words[0]));
@@ -93,15 +97,16 @@ std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& probl
     const std::array<std::size_t, kPose>& columns = header_->columns;
     const bool is_run = header_->is_prose && words.size() != header_->count;
     const std::size_t first = is_run ? std::ranges::min(columns) : 0;
-    if (words.size() <= std::ranges::max(columns) - first) {
-      if (is_first_)
+    const std::size_t last = std::max(std::ranges::max(columns), header_->nanoseconds.value_or(0));
+    if (words.size() <= last - first) {
+      if (is_first_ || words.size() == kPose)  // which would be taken for a pose
         problem = "the header names " + std::to_string(header_->count) + " columns, and this row has " +
                   std::to_string(words.size());
       return words;
     }
     std::vector<Word> row;
     for (const std::size_t column : columns) row.push_back(words[column - first]);
-    if (const auto column = header_->nanoseconds; column && *column < words.size()) nanoseconds_ = words[*column].text;
+    if (header_->nanoseconds) nanoseconds_ = words[*header_->nanoseconds].text;
     return row;
   }
   if (is_euroc_ && words.size() >= kPose) {

@@ -21,7 +21,7 @@ class PoseTable {
 
   // The words `timestamp tx ty tz qx qy qz qw` of the next line, in this order; none of a line without a pose (empty, a
   // comment, a header). A row of another length is returned unchanged. problem: where the header, or the first row,
-  // shows another kind of file or does not say which column is which.
+  // shows another kind of file or does not say which column is which, and where a shorter row looks like a pose.
   std::vector<Word> Row(std::string_view line, std::string& problem);
   // Of the last row's first word, in seconds.
   std::string Stamp(const Word& word) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <utility>
@@ -153,10 +154,12 @@ void ReadOpenCv(settings::Section root, Camera& camera) {
   for (const char* key : {"fisheye", "model", "camera_model", "distortion_model", "distortion_type"}) {
     std::string model;
     if (!root.Has(key) || !root.Read(key, model)) continue;
-    const bool is_fisheye =
-        model == "true" || model == "1" || model == "fisheye" || model == "equidistant" || model == "KANNALA_BRANDT";
-    const bool is_plain = model == "false" || model == "0" || model == "pinhole" || model == "PINHOLE" ||
-                          model == "plumb_bob" || model == "radtan" || model == "radial_tangential" || model == "none";
+    const auto is_any_of = [&](std::initializer_list<std::string_view> names) {
+      return std::ranges::find(names, model) != names.end();
+    };
+    const bool is_fisheye = is_any_of({"true", "1", "fisheye", "equidistant", "KANNALA_BRANDT"}),
+               is_plain =
+                   is_any_of({"false", "0", "none", "pinhole", "PINHOLE", "plumb_bob", "radtan", "radial_tangential"});
     if (is_fisheye) camera.lens = Lens::fisheye;
     if (!is_fisheye && !is_plain && std::string_view(key) != "model")  // which may be a name
       root.Reject(

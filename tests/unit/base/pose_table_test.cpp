@@ -75,6 +75,8 @@ TEST(PoseTable, JoinsSecondsAndNanoseconds) {
   const std::string of_ros =
       "Time,header.stamp.secs,header.stamp.nsecs,x,y,z,qx,qy,qz,qw\n7.6,7,500000000,1,2,3,4,5,6,9";
   EXPECT_EQ(LastOf(of_ros).at(0), "7.500000000") << "not the time of arrival";
+  EXPECT_THAT(LastOf("x,y,z,qx,qy,qz,qw,sec,nsec\n1,2,3,4,5,6,9,7,5\n1,2,3,4,5,6,9,8"),
+              ElementsAre(HasSubstr("names 9 columns, and this row has 8")));
   EXPECT_EQ(LastOf("# counter sec nsec x y z qx qy qz qw\n8 7 40 1 2 3 4 5 6 9").at(0), "7.000000040");
 }
 
