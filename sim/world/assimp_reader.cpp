@@ -5,6 +5,7 @@
 #include <assimp/scene.h>
 
 #include <algorithm>
+#include <array>
 #include <assimp/IOStream.hpp>
 #include <assimp/Importer.hpp>
 #include <cmath>
@@ -266,8 +267,9 @@ class Converter {
     aiColor4D color(1, 1, 1, 1);
     if (in.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
       aiColor3D diffuse(1, 1, 1);
-      // FBX, and glTF 1.0, where assimp gives black: a texture takes the colour's place.
-      const bool is_replaced = (extension_ == ".fbx" || extension_ == ".gltf" || extension_ == ".glb") && has(base);
+      // A texture takes the colour's place; in glTF 1.0, where assimp gives black, too.
+      static constexpr std::array kReplacing{".fbx", ".3ds", ".ase", ".gltf", ".glb"};
+      const bool is_replaced = has(base) && std::ranges::find(kReplacing, extension_) != kReplacing.end();
       if (!is_replaced) in.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse);
       color = {diffuse.r, diffuse.g, diffuse.b, 1};
     }

@@ -6,10 +6,13 @@ set -euo pipefail
 here=$(cd -- "$(dirname -- "$0")" && pwd)
 cd -- "$1"
 violations=0
+export LC_ALL=C  # bytes: a tenth of the time
 
 # sources FOLDER: its C++ files. includes FOLDER: "file:line:header" of everything they include.
-sources() { find "$1" -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.inc' \) | sort; }
-includes() { sources "$1" | xargs -r grep -HnE '^\s*#\s*include' | sed -E 's/^([^:]+:[0-9]+):\s*#\s*include\s*(["<]([^">]+)[">])?.*/\1:\3/'; }
+sources() { find "$@" -type f \( -name "*.h" -o -name "*.cpp" -o -name "*.inc" \) | sort; }
+all_includes=$(sources sim vo tools 2>/dev/null | xargs -r grep -HnE '^\s*#\s*include' |
+  sed -E 's/^([^:]+:[0-9]+):\s*#\s*include\s*(["<]([^">]+)[">])?.*/\1:\3/') || true
+includes() { grep "^$1/" <<<"$all_includes" || true; }
 report() { while read -r line; do echo "$line   ($1)"; violations=$((violations + 1)); done; }
 
 # forbid FOLDER PATTERN WHY: no header that matches; allow FOLDER PATTERN WHY: no header but those that match.

@@ -22,6 +22,22 @@ vo::MotionParams Params() {
   return params;
 }
 
+// Size and correlation time of a first-order Gauss-Markov velocity: its steps have this density and keep this variance.
+TEST(MotionModelContract, AVelocityThatDecaysKeepsItsSize) {
+  constexpr double kTime = 0.7, kDt = 1e-4;
+  constexpr double kDensity = kPositionNoise * kPositionNoise;
+  constexpr double kVariance = kDensity * kTime / 2;  // per axis
+  EXPECT_NEAR(vo::VelocityTime(Eigen::Vector3d::Constant(std::sqrt(kVariance)), kDensity), kTime, 1e-12);
+  const vo::MotionModel model =
+      vo::NearlyConstantVelocity(Params(), kDt, {.coasting_s = kDt, .position_time = kTime, .orientation_time = 0.2});
+  const double decay = model.F(6, 6);
+  EXPECT_NEAR(decay * decay * kVariance + model.Q(6, 6), kVariance, 1e-6 * kVariance);
+  EXPECT_NEAR(model.F(9, 9), std::exp(-kDt / 0.2), 1e-15);
+  EXPECT_NEAR(model.F(3, 9), 0.2 * (1 - model.F(9, 9)), 1e-15);
+  EXPECT_EQ(vo::VelocityTime({1e-9, 0, 0}, 1), vo::kLeastVelocityTime);
+  EXPECT_EQ(vo::VelocityTime({1e9, 0, 0}, 1), vo::kMostVelocityTime);
+}
+
 TEST(MotionModelContract, AsWorkedByHand) {
   // dt = 0.5: dt^3/3 = 1/24, dt^2/2 = 1/8, dt = 1/2, times 4 and times 9.
   const vo::MotionModel model = vo::NearlyConstantVelocity(Params(), 0.5);

@@ -5,12 +5,19 @@
 
 namespace vo {
 
+double VelocityTime(const Eigen::Vector3d& velocity, double psd) {
+  return std::clamp(2.0 / 3 * velocity.squaredNorm() / psd, kLeastVelocityTime, kMostVelocityTime);
+}
+
 MotionModel NearlyConstantVelocity(const MotionParams& params, double dt, const MotionInput& input) {
   MotionModel model;
   const double coasting = std::min(input.coasting_s, dt);
-  const double decay = std::exp(-coasting / kCoastingTime);
-  model.F.topRightCorner<6, 6>().diagonal().setConstant(dt - coasting + kCoastingTime * (1 - decay));  // (8)
-  model.F.bottomRightCorner<6, 6>().diagonal().setConstant(decay);
+  for (int axis = 0; axis < 6; ++axis) {
+    const double time = axis < 3 ? input.position_time : input.orientation_time;
+    const double decay = std::exp(-coasting / time);
+    model.F(axis, 6 + axis) = dt - coasting + time * (1 - decay);  // (8)
+    model.F(6 + axis, 6 + axis) = decay;
+  }
   Vector6 psd;  // sigma^2
   psd.head<3>().setConstant(input.position_noise * (params.position_noise * params.position_noise));
   psd.tail<3>().setConstant(input.orientation_noise * (params.orientation_noise * params.orientation_noise));

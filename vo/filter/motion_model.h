@@ -23,6 +23,13 @@ struct PathCorrection {
   int first_landmark = 0;  // this one and those behind it move, but for those first seen with the one before
 };
 
+constexpr double kLeastVelocityTime = 0.1, kMostVelocityTime = 4;  // [s]
+
+// Correlation time of a velocity of three axes that a first-order Gauss-Markov process keeps at its size: tau = 2
+// sigma^2 / psd, sigma^2 = |v|^2 / 3. `psd`: power spectral density of its acceleration, per axis (Gelb, "Applied
+// Optimal Estimation", MIT Press 1974, section 3.6).
+double VelocityTime(const Eigen::Vector3d& velocity, double psd);
+
 // Input of one prediction besides its time.
 struct MotionInput {
   // Factors on the power spectral densities of MotionParams.
@@ -33,14 +40,13 @@ struct MotionInput {
   // Rotation from the last sampled (or window's last) camera to the present one, measured by direct alignment of the
   // images: the mean in place of the model's. The covariance stays that of the model.
   std::optional<Eigen::Quaterniond> turn = std::nullopt;
-  // The last seconds of the step, in which no image was matched: the velocity decays, with kCoastingTime.
+  // The last seconds of the step, in which no image was matched: the velocity decays, with these times [s].
   double coasting_s = 0;
+  double position_time = kLeastVelocityTime, orientation_time = kLeastVelocityTime;
   // Until the update: a prediction made again without it is that of the path as it was. Of poses sampled in their own
   // frame (lag 0, after the start); left out by other filters.
   std::optional<PathCorrection> correction = std::nullopt;
 };
-
-constexpr double kCoastingTime = 0.1;  // [s]; hand-held motion changes its velocity in this time
 
 // dt > 0 [s].
 MotionModel NearlyConstantVelocity(const MotionParams& params, double dt, const MotionInput& input = {});

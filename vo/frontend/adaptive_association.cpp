@@ -108,13 +108,22 @@ MotionInput AdaptiveAssociation::Aligned(const MotionInput& input, const Eigen::
   return aligned;
 }
 
-MotionInput AdaptiveAssociation::Input(const Filter& filter, double coasting_s) const {
-  MotionInput input = noise_.Input(filter.answer().belief.pose.q_WC);
+MotionInput AdaptiveAssociation::Input(const Filter& filter, double coasting_s) {
+  const Belief& belief = filter.answer().belief;
+  MotionInput input = noise_.Input(belief.pose.q_WC);
+  const auto psd = [](double noise, double factor) { return factor * (noise * noise); };
+  if (coasting_s == 0) {
+    position_time_ = VelocityTime(belief.velocity.head<3>(), psd(motion_.position_noise, input.position_noise));
+    orientation_time_ =
+        VelocityTime(belief.velocity.tail<3>(), psd(motion_.orientation_noise, input.orientation_noise));
+  }
   input.coasting_s = coasting_s;
+  input.position_time = position_time_;
+  input.orientation_time = orientation_time_;
   return input;
 }
 
-void AdaptiveAssociation::Predict(Filter& filter, double dt, double coasting_s) const {
+void AdaptiveAssociation::Predict(Filter& filter, double dt, double coasting_s) {
   filter.Predict(dt, Input(filter, coasting_s));
 }
 
@@ -128,7 +137,7 @@ bool AdaptiveAssociation::IsRepeated(const cv::Mat& grey) {
 Association AdaptiveAssociation::PredictAndAssociate(Filter& filter, double dt, double coasting_s, const cv::Mat& grey,
                                                      const Associate& associate, const Relocalise& relocalise) {
   const std::optional<MotionInput> known = std::exchange(begin_with_, std::nullopt);
-  const MotionInput first = known.value_or(Input(filter, coasting_s));
+  const MotionInput first = known ? *known : Input(filter, coasting_s);
   filter.Predict(dt, first);
   Trial trial{filter, associate, first, associate(first, Search::usual)};
   Pose predicted = trial.association.predicted.mean;  // by the motion model alone

@@ -44,7 +44,7 @@ class AdaptiveAssociation {
   void BeginWith(const std::optional<MotionInput>& input) { begin_with_ = input; }
 
   // Prediction of a frame that is not associated.
-  void Predict(Filter& filter, double dt, double coasting_s) const;
+  void Predict(Filter& filter, double dt, double coasting_s);
 
   // Whether `grey` equals the image that was kept last, pixel by pixel: a frame repeated by the camera or the
   // recording, without new information. At most twice in a row: a static, noise-free camera gives equal images too.
@@ -54,7 +54,8 @@ class AdaptiveAssociation {
   void Keep(const cv::Mat& grey) { grey.copyTo(last_); }  // the memory is the caller's
 
  private:
-  MotionInput Input(const Filter& filter, double coasting_s) const;
+  // Input of the next prediction. A velocity decays with the times of the last frame that had matches.
+  MotionInput Input(const Filter& filter, double coasting_s);
 
   // The input with a turn measured by direct alignment, which determines a rotation and leaves the position to the
   // model, but for the start, whose velocity is not known.
@@ -66,6 +67,7 @@ class AdaptiveAssociation {
   cv::Mat last_;  // grey image of the last pose
   int repetitions_ = 0;
   UsualAgreement usual_agreement_;
+  double position_time_ = kLeastVelocityTime, orientation_time_ = kLeastVelocityTime;
   std::optional<MotionInput> repeated_input_, begin_with_;
 };
 

@@ -15,7 +15,7 @@ namespace {
 class Still : public vo::Filter {
  public:
   explicit Still(bool initialising) { answer_.initialising = initialising; }
-  void Predict(double, const vo::MotionInput&) override {}
+  void Predict(double, const vo::MotionInput& input) override { input_ = input; }
   void PredictAgain(const vo::MotionInput&) override {}
   const vo::FilterAnswer& Update(std::span<const vo::Match>) override { return answer_; }
   void AddLandmarks(std::span<const vo::FirstView>) override {}
@@ -26,9 +26,12 @@ class Still : public vo::Filter {
   vo::ReferencePath Reference() const override { return {}; }
   std::vector<LandmarkBelief> LandmarkBeliefs() const override { return {}; }
   std::vector<LandmarkSpread> LandmarkSpreads() const override { return {}; }
+  void SetVelocity(const vo::Vector6& velocity) { answer_.belief.velocity = velocity; }
+  const vo::MotionInput& input() const { return input_; }
 
  private:
   vo::FilterAnswer answer_;
+  vo::MotionInput input_;
 };
 
 constexpr double kDt = 1 / 30.0;
@@ -105,6 +108,27 @@ double NoiseBehindATurn(const Eigen::Vector3d& turn) {
 
 TEST(AdaptiveAssociation, ProcessNoiseContainsTheTurnThatWasMeasured) {
   EXPECT_GT(NoiseBehindATurn(kTurn), 10 * NoiseBehindATurn(0.01 * kTurn));
+}
+
+// Without matches the velocity decays with the times of the last frame that had some, and not with its own.
+TEST(AdaptiveAssociation, AVelocityDecaysWithTheTimesOfTheLastMatches) {
+  Still filter(false);
+  vo::AdaptiveAssociation adaptive({}, {});
+  filter.SetVelocity((vo::Vector6() << 1, 0, 0, 0, 0.5, 0).finished());
+  adaptive.Predict(filter, kDt, 0);
+  const vo::MotionInput matched = filter.input();
+  const vo::MotionParams params;
+  const double psd = matched.position_noise * params.position_noise * params.position_noise;
+  EXPECT_EQ(matched.position_time, vo::VelocityTime({1, 0, 0}, psd));
+  EXPECT_NE(matched.position_time, matched.orientation_time);
+  for (const double speed : {1e-3, 1e3}) {
+    filter.SetVelocity(vo::Vector6::Constant(speed));
+    adaptive.Predict(filter, kDt, kDt);
+    EXPECT_EQ(filter.input().position_time, matched.position_time);
+    EXPECT_EQ(filter.input().orientation_time, matched.orientation_time);
+  }
+  adaptive.Predict(filter, kDt, 0);
+  EXPECT_EQ(filter.input().position_time, vo::kMostVelocityTime);
 }
 
 TEST(UsualAgreement, AHalfIsDoubtfulWhereMoreIsUsual) {

@@ -334,6 +334,45 @@ TEST(MeshFormats, ColladaOfOtherPrograms) {
   EXPECT_FLOAT_EQ(material.emission.x, 0.25f);
 }
 
+// Chunk of a 3DS file.
+std::string Chunk(std::uint16_t id, const std::string& content) {
+  std::string bytes;
+  Append<std::uint16_t>(bytes, {id});
+  Append<std::uint32_t>(bytes, {static_cast<std::uint32_t>(content.size() + 6)});
+  return bytes + content;
+}
+
+// A triangle of grey 128; `map`: its picture, if any.
+std::string ThreeDs(const std::string& map) {
+  const std::string name("m\0", 2);
+  std::string corners, uvs, faces;
+  Append<std::uint16_t>(corners, {3});
+  Append<float>(corners, {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  Append<std::uint16_t>(uvs, {3});
+  Append<float>(uvs, {0, 0, 1, 0, 0, 1});
+  Append<std::uint16_t>(faces, {1, 0, 1, 2, 7});
+  std::string of_faces = name;
+  Append<std::uint16_t>(of_faces, {1, 0});
+  std::string paint = Chunk(0xa000, name) + Chunk(0xa020, Chunk(0x0011, "\x80\x80\x80"));
+  if (!map.empty()) paint += Chunk(0xa200, Chunk(0x0030, std::string("d\0", 2)) + Chunk(0xa300, map + '\0'));
+  const std::string mesh =
+      Chunk(0x4100, Chunk(0x4110, corners) + Chunk(0x4140, uvs) + Chunk(0x4120, faces + Chunk(0x4130, of_faces)));
+  return Chunk(0x4d4d, Chunk(0x3d3d, Chunk(0xafff, paint) + Chunk(0x4000, name + mesh)));
+}
+
+// 3DS: the picture at full strength takes the colour's place.
+TEST(MeshFormats, APictureOf3dsTakesTheColoursPlace) {
+  const Folder folder;
+  folder.Write("paint.png", EncodeNoise(".png", 8, 4));
+  for (const bool painted : {true, false}) {
+    const Scene scene = LoadScene(WorldOf(folder.Write("model.3ds", ThreeDs(painted ? "paint.png" : ""))));
+    ASSERT_THAT(scene.meshes, SizeIs(1));
+    const Material& material = scene.materials.at(static_cast<std::size_t>(scene.meshes[0].material));
+    EXPECT_EQ(material.texture >= 0, painted);
+    EXPECT_EQ(material.base_color.x == 1, painted) << material.base_color.x;
+  }
+}
+
 // A triangle in the plane z = 1 of COLLADA; `effect` is its shader, `extra` its skin's controller.
 std::string ColladaTriangle(const std::string& up, const std::string& effect, const std::string& nodes,
                             const std::string& extra = "") {
