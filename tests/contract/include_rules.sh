@@ -6,7 +6,7 @@ set -euo pipefail
 here=$(cd -- "$(dirname -- "$0")" && pwd)
 cd -- "$1"
 violations=0
-export LC_ALL=C  # bytes: a tenth of the time
+export LC_ALL=C  # bytes: faster than characters
 
 # sources FOLDER: its C++ files. includes FOLDER: "file:line:header" of everything they include.
 sources() { find "$@" -type f \( -name "*.h" -o -name "*.cpp" -o -name "*.inc" \) | sort; }
