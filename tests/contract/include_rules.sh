@@ -9,7 +9,7 @@ violations=0
 export LC_ALL=C  # bytes: faster than characters
 
 # sources FOLDER: its C++ files. includes FOLDER: "file:line:header" of everything they include.
-sources() { find "$@" -type f \( -name "*.h" -o -name "*.cpp" -o -name "*.inc" \) | sort; }
+sources() { find "$@" -type f \( -name '*.h' -o -name '*.cpp' -o -name '*.inc' \) | sort; }
 all_includes=$(sources sim vo tools 2>/dev/null | xargs -r grep -HnE '^\s*#\s*include' |
   sed -E 's/^([^:]+:[0-9]+):\s*#\s*include\s*(["<]([^">]+)[">])?.*/\1:\3/') || true
 includes() { grep "^$1/" <<<"$all_includes" || true; }
