@@ -16,7 +16,7 @@
 namespace vo {
 namespace {
 
-constexpr std::size_t kMinLandmarks = 20, kMaxLandmarks = 100;
+constexpr std::size_t kMinLandmarks = 20, kMaxLandmarks = 200;
 constexpr std::size_t kMinViews = 4;
 constexpr double kFloorPx = 0.1;          // standard deviation of any sighting
 constexpr double kSystematicPx = 0.01;    // rms of an error pattern common to all frames that looks like either unknown

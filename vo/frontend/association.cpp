@@ -44,6 +44,15 @@ Match MatchOf(const AssociationContext& in, const Candidate& candidate, const Fo
           candidate.inflation};
 }
 
+double MahalanobisSquared(const Eigen::Vector2d& nu, const Eigen::Matrix2d& S) { return nu.dot(S.inverse() * nu); }
+
+// nu' S^-1 nu of a match given the pose of `map`, S of the landmark and R.
+double DistanceGivenPose(const Match& match, const MapView& map) {
+  const Projection h = map(match);
+  const Eigen::Matrix3d& P = map.landmark(match.landmark).covariance;
+  return MahalanobisSquared(match.z - h.z, h.J_landmark * P * h.J_landmark.transpose() + match.R);
+}
+
 // Residual of an inlier at the robust pose (`map`), relative to R without inflation.
 Residual ResidualOf(const Candidate& candidate, const Match& match, const MapView& map) {
   const Projection h = map(match);
@@ -249,9 +258,10 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
       view.status = consensus.inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;
       if (consensus.inlier[m]) {
         const Eigen::Vector2d nu = map.AtStamp(match).z - c.prediction.z;
-        searched.mahalanobis_sq = nu.dot(Eigen::Matrix2d(c.prediction.covariance + match.R).inverse() * nu);
+        const double predicted_sq = MahalanobisSquared(nu, c.prediction.covariance + match.R);
+        searched.mahalanobis_sq = params.motion.adaptive ? DistanceGivenPose(match, map) : predicted_sq;
         searched.residual = ResidualOf(c, match, map);
-        result.nis += *searched.mahalanobis_sq;
+        result.nis += predicted_sq;
         result.matches.push_back(match);
         result.moving.push_back(
             {c.landmark, requests[i].warp, found->pixel, requests[i].first_rate, c.lens * motion.Rate(c.landmark)});

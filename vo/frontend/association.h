@@ -25,7 +25,8 @@ enum class Search { usual, wide };
 // A landmark that was found, or that is predicted to be visible and was not.
 struct Searched {
   int landmark = 0;
-  // nu' S^-1 nu of its match under the prediction, before sampling; none: not found, or an outlier
+  // nu' S^-1 nu of its match, for the score: given the robust pose or, without motion.adaptive, under the prediction,
+  // before sampling. None: not found, or an outlier.
   std::optional<double> mahalanobis_sq;
   Residual residual;  // of an inlier, or nearly one, at the robust pose, relative to R from this image alone
 };
@@ -42,7 +43,7 @@ struct Association {
   std::vector<MovingMatch> moving;  // the same, for the exposure time
   std::vector<FeatureView> views;   // in the order of `searched`
   std::vector<LeftOut> left_out;
-  double nis = 0;                      // sum of mahalanobis_sq
+  double nis = 0;                      // sum of nu' S^-1 nu under the prediction
   int repeated = 0;                    // predictions made again and kept
   int unseen = 0, unseen_matched = 0;  // searched landmarks that were not matched for a while
   PoseGaussian predicted, agreed;      // of the reference path: before the matches, and by the robust fit

@@ -183,7 +183,32 @@ TEST(Odometry, SearchesAgainAtThePoseThatMatchesShow) {
     matched += d.matched;
     searched += d.searched;
   }
-  EXPECT_GT(matched, 0.85 * searched);  // 0.80 with one search
+  EXPECT_GT(matched, 0.81 * searched);  // 0.79 with one search
+}
+
+// Jolts of the camera that the motion model does not predict. Existence is given the pose that the matches show, so
+// landmarks whose matches agree stay.
+TEST(Odometry, KeepsLandmarksInFramesThatArePredictedBadly) {
+  const vo_test::Texture texture(4, 80.0, 24);
+  for (const double jolt : {0.015, 0.04}) {  // [rad], 8 and 23 px
+    vo::Params params = SmallImageParams();
+    params.motion.adaptive = true;
+    vo::Odometry odometry(kCamera, params, KnownStart(), 1);
+    std::set<std::int64_t> before;
+    std::size_t left = 0;
+    for (int k = 0; k < 12; ++k) {
+      vo::Pose pose = TruthAt(k);
+      pose.q_WC = pose.q_WC * vo::Exp({0, k % 4 < 2 ? 0.0 : jolt, 0});
+      odometry.Track({k * kFrameNs, ViewFrom(pose, texture)});
+      left = 0;
+      for (const vo::MapPoint& point : odometry.Map()) {
+        if (k == 1) before.insert(point.id);
+        left += before.count(point.id);
+      }
+    }
+    EXPECT_GT(before.size(), 40u);
+    EXPECT_GT(left, 0.9 * static_cast<double>(before.size())) << jolt;  // under the prediction: 4 and 3 of 51
+  }
 }
 
 // First image of another scene: the start begins with the second one, and the covariance includes the motion between
