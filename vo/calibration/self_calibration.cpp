@@ -11,7 +11,7 @@ namespace {
 // frames, is no more accurate than none.
 constexpr double kLeastReadout = 0.15;
 constexpr double kLeastChange = 0.002;  // [s] smaller changes of a readout time in use are negligible
-constexpr double kSignificant = 3;      // [sigma]
+constexpr double kSignificant = 3, kSignificantEarly = 6;  // [sigma]
 // Windows of a larger standard deviation are ignored.
 constexpr double kWideReadout = 0.005, kWideFocal = 0.05;
 
@@ -54,7 +54,7 @@ bool SelfCalibration::Add(std::int64_t stamp_ns, const Pose& pose, std::span<con
       frame.sightings.push_back({view.id, view.pixel, view.R});
   }
   frames_.push_back(std::move(frame));
-  if (frames_.size() < kWindowFrames) return completed;
+  if (frames_.size() < kWindowFrames) return FitEarly() || completed;
   completed |= EndFit();
   const bool at_once = starting();
   ++windows_;
@@ -63,6 +63,21 @@ bool SelfCalibration::Add(std::int64_t stamp_ns, const Pose& pose, std::span<con
   frames_.clear();
   if (at_once) completed |= EndFit();
   return completed;
+}
+
+// The readout time from the first part of a window, since a map begun without one is sheared. Of so few frames a quick
+// motion has changes that the fit takes for readout or focal length: its own covariance is too small.
+bool SelfCalibration::FitEarly() {
+  if (!starting() || readout_s_ != 0 || frames_.size() < kEarliest || frames_.size() % kEarlyStep != 0) return false;
+  const std::optional<WindowFit> fit = WindowFitting(frames_, camera_, readout_s_, true).AllRounds();
+  const auto significant = [](const Measured& m, double sigmas) { return std::abs(m.value) > sigmas * m.sigma; };
+  if (!fit || fit->readout_s.sigma > kWideReadout || !significant(fit->readout_s, kSignificantEarly) ||
+      significant(fit->log_focal, kSignificant))
+    return false;
+  early_ = fit->readout_s;
+  period_s_ = static_cast<double>(frames_.back().stamp_ns - frames_.front().stamp_ns) * 1e-9 /
+              static_cast<double>(frames_.size() - 1);
+  return true;
 }
 
 bool SelfCalibration::EndFit() {
@@ -77,10 +92,11 @@ bool SelfCalibration::EndFit() {
 }
 
 std::optional<double> SelfCalibration::ChangeReadout() {
-  if (readouts_.empty()) return std::nullopt;
-  const auto [value, sigma] = RandomEffectsMean(readouts_);
+  if (readouts_.empty() && !early_) return std::nullopt;
+  const auto [value, sigma] = readouts_.empty() ? *early_ : RandomEffectsMean(readouts_);
   const double least = readout_s_ == 0 ? kLeastReadout * period_s_ : kLeastChange;
-  if (std::abs(value - readout_s_) < std::max(least, kSignificant * sigma)) return std::nullopt;
+  const double significant = readout_s_ == 0 ? kSignificant * sigma : sigma;
+  if (std::abs(value - readout_s_) < std::max(least, significant)) return std::nullopt;
   log_focals_.clear();  // of tracks that another readout time has distorted
   px_of_focal_ = 0;
   return readout_s_ = value;

@@ -39,8 +39,8 @@ class SelfCalibration {
 
   // Whether the frames so far may have to be tracked again: the readout time is not estimated yet.
   bool starting() const { return !stated_ && readouts_.empty() && windows_ < kStartWindows; }
-  // A frame and its answer. True where it completes the fit of a window: at once while starting, else one round a
-  // frame.
+  // A frame and its answer. True where it completes the fit of a window, or of the first part of one: at once while
+  // starting, else one round a frame.
   bool Add(std::int64_t stamp_ns, const Pose& pose, std::span<const FeatureView> features);
   bool EndFit();  // all rounds of the present one, if any; returns whether there was one
   // The readout time from now on, where it differs significantly from that in use.
@@ -51,7 +51,9 @@ class SelfCalibration {
   CalibrationEstimate Estimate();  // ends the fit
 
  private:
-  static constexpr std::size_t kWindowFrames = 30;
+  bool FitEarly();
+
+  static constexpr std::size_t kWindowFrames = 30, kEarliest = 10, kEarlyStep = 5;
   static constexpr int kStartWindows = 3, kMostWindows = 40;
   static constexpr std::size_t kEnough = 8;  // windows that determine a parameter
 
@@ -62,6 +64,7 @@ class SelfCalibration {
   int windows_ = 0;
   std::vector<TrackedFrame> frames_;      // of the present window
   std::optional<WindowFitting> fitting_;  // of the one before
+  std::optional<Measured> early_;         // readout time, until the first window gives one
   std::vector<Measured> readouts_, log_focals_;
   double px_of_focal_ = 0;  // sum over log_focals_
 };

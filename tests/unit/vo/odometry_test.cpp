@@ -190,7 +190,7 @@ TEST(Odometry, SearchesAgainAtThePoseThatMatchesShow) {
 // landmarks whose matches agree stay.
 TEST(Odometry, KeepsLandmarksInFramesThatArePredictedBadly) {
   const vo_test::Texture texture(4, 80.0, 24);
-  for (const double jolt : {0.015, 0.04}) {  // [rad], 8 and 23 px
+  for (const double jolt : {0.015, 0.04}) {  // [rad], 4 and 10 px
     vo::Params params = SmallImageParams();
     params.motion.adaptive = true;
     vo::Odometry odometry(kCamera, params, KnownStart(), 1);
