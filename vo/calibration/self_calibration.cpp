@@ -58,11 +58,16 @@ bool SelfCalibration::Add(std::int64_t stamp_ns, const Pose& pose, std::span<con
   completed |= EndFit();
   const bool at_once = starting();
   ++windows_;
-  period_s_ = static_cast<double>(stamp_ns - frames_.front().stamp_ns) * 1e-9 / (kWindowFrames - 1);
+  SetPeriod();
   fitting_.emplace(frames_, camera_, readout_s_, !stated_);
   frames_.clear();
   if (at_once) completed |= EndFit();
   return completed;
+}
+
+void SelfCalibration::SetPeriod() {
+  const std::int64_t duration_ns = frames_.back().stamp_ns - frames_.front().stamp_ns;
+  period_s_ = static_cast<double>(duration_ns) * 1e-9 / static_cast<double>(frames_.size() - 1);
 }
 
 // The readout time from the first part of a window, since a map begun without one is sheared. Of so few frames a quick
@@ -75,8 +80,7 @@ bool SelfCalibration::FitEarly() {
       significant(fit->log_focal, kSignificant))
     return false;
   early_ = fit->readout_s;
-  period_s_ = static_cast<double>(frames_.back().stamp_ns - frames_.front().stamp_ns) * 1e-9 /
-              static_cast<double>(frames_.size() - 1);
+  SetPeriod();
   return true;
 }
 

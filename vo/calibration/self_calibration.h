@@ -51,6 +51,7 @@ class SelfCalibration {
   CalibrationEstimate Estimate();  // ends the fit
 
  private:
+  void SetPeriod();
   bool FitEarly();
 
   static constexpr std::size_t kWindowFrames = 30, kEarliest = 10, kEarlyStep = 5;
@@ -60,7 +61,7 @@ class SelfCalibration {
   Camera camera_;
   bool stated_;
   double readout_s_;
-  double period_s_ = 0;  // between frames, mean of the last window
+  double period_s_ = 0;  // between frames, mean of the frames last fitted
   int windows_ = 0;
   std::vector<TrackedFrame> frames_;      // of the present window
   std::optional<WindowFitting> fitting_;  // of the one before

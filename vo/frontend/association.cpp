@@ -46,19 +46,22 @@ Match MatchOf(const AssociationContext& in, const Candidate& candidate, const Fo
 
 double MahalanobisSquared(const Eigen::Vector2d& nu, const Eigen::Matrix2d& S) { return nu.dot(S.inverse() * nu); }
 
-// nu' S^-1 nu of a match given the pose of `map`, S of the landmark and R.
-double DistanceGivenPose(const Match& match, const MapView& map) {
-  const Projection h = map(match);
-  const Eigen::Matrix3d& P = map.landmark(match.landmark).covariance;
-  return MahalanobisSquared(match.z - h.z, h.J_landmark * P * h.J_landmark.transpose() + match.R);
-}
-
-// Residual of an inlier at the robust pose (`map`), relative to R without inflation.
-Residual ResidualOf(const Candidate& candidate, const Match& match, const MapView& map) {
+// Residual of a match given the pose of `map`, and the landmark's covariance in the image.
+struct ResidualAtPose {
+  bool in_front = false;  // the rest is valid only then
+  Eigen::Vector2d r = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d of_landmark = Eigen::Matrix2d::Zero();
+};
+ResidualAtPose ResidualGivenPose(const Match& match, const MapView& map) {
   const Projection h = map(match);
   if (!h.in_front) return {};
-  Residual residual = Residual::Of(
-      match.z - h.z, h.J_landmark * map.landmark(match.landmark).covariance * h.J_landmark.transpose(), match.R);
+  return {true, match.z - h.z, h.J_landmark * map.landmark(match.landmark).covariance * h.J_landmark.transpose()};
+}
+
+// The same relative to R without inflation, for the landmark's history.
+Residual ResidualOf(const Candidate& candidate, const Match& match, const ResidualAtPose& at) {
+  if (!at.in_front) return {};
+  Residual residual = Residual::Of(at.r, at.of_landmark, match.R);
   residual.ratio *= candidate.inflation;
   return residual;
 }
@@ -255,20 +258,21 @@ Association Associate(const Filter& filter, std::span<const LandmarkRecord> reco
                      FeatureView::Status::missed};
     if (found) {
       const Match& match = matches[m];
+      const ResidualAtPose at = ResidualGivenPose(match, map);
+      searched.residual = ResidualOf(c, match, at);
       view.status = consensus.inlier[m] ? FeatureView::Status::matched : FeatureView::Status::rejected;
       if (consensus.inlier[m]) {
         const Eigen::Vector2d nu = map.AtStamp(match).z - c.prediction.z;
         const double predicted_sq = MahalanobisSquared(nu, c.prediction.covariance + match.R);
-        searched.mahalanobis_sq = params.motion.adaptive ? DistanceGivenPose(match, map) : predicted_sq;
-        searched.residual = ResidualOf(c, match, map);
+        searched.mahalanobis_sq =
+            params.motion.adaptive && at.in_front ? MahalanobisSquared(at.r, at.of_landmark + match.R) : predicted_sq;
         result.nis += predicted_sq;
         result.matches.push_back(match);
         result.moving.push_back(
             {c.landmark, requests[i].warp, found->pixel, requests[i].first_rate, c.lens * motion.Rate(c.landmark)});
         if (records[c.landmark].unseen()) ++result.unseen_matched;
-      } else {
-        searched.residual = ResidualOf(c, match, map);
-        if (searched.residual.ratio > c.inflation * kNearly * params.score.gate) searched.residual = {};
+      } else if (searched.residual.ratio > c.inflation * kNearly * params.score.gate) {
+        searched.residual = {};
       }
       ++m;
     }

@@ -67,9 +67,8 @@ struct LandmarkRecord {
 // (44): the score before the image is used.
 double PredictScore(double score, const ScoreParams& params);
 
-// (45)-(49) for a feature that was searched for. `mahalanobis_sq` = nu' S^-1 nu of its detection, with S of pose,
-// landmark and pixel before sampling; none = no detection. S itself is not needed: V_G * Lambda = G / (2 P_G) exp(-d^2
-// / 2).
+// (45)-(49) for a feature that was searched for. `mahalanobis_sq` = nu' S^-1 nu of its detection (Searched); none = no
+// detection. S itself is not needed: V_G * Lambda = G / (2 P_G) exp(-d^2 / 2).
 double UpdateScore(double predicted_score, std::optional<double> mahalanobis_sq, const ScoreParams& params);
 
 // Kept are the permanent ones, and those that exist (lost ones: with known depth) and were searched for in the last

@@ -268,8 +268,8 @@ TEST(SelfCalibration, UsesTheMeanOverWindows) {
   EXPECT_NEAR(estimate.readout_used_s, estimate.readout_s->value, estimate.readout_s->sigma);
 }
 
-// Of 29 frames, less than a window, fits of the first 10 to 25. A global shutter's readout is used where it is off by six
-// standard deviations: false-alarm rate over 20 worlds below 0.01, were the errors 1.5 times as large as their
+// Of 29 frames, less than a window, fits of the first 10 to 25. A global shutter's readout is used where it is off by
+// six standard deviations: false-alarm rate over 20 worlds below 0.01, were the errors 1.5 times as large as their
 // covariance says. Control: the readout of a rolling one is used.
 TEST(SelfCalibration, UsesAReadoutFromTheFirstPartOfAWindow) {
   Draws draws(7);
