@@ -16,11 +16,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "sim/world/collada_text.h"
 #include "sim/world/fbx_text.h"
 #include "sim/world/mesh_readers.h"
 #include "sim/world/texture.h"
 #include "sim/world/texture_file.h"
+#include "sim/world/xml_text.h"
 #include "tools/base/files.h"
 
 namespace sim {
@@ -336,7 +336,11 @@ class Converter {
 }  // namespace
 
 void ReadByAssimp(MeshFiles& files, MeshImport& import) {
-  if (LowerExtension(files.mesh()) == ".fbx") import.warnings = FbxWarnings(files.Read(files.mesh()).value_or(""));
+  const std::string extension = LowerExtension(files.mesh());
+  if (extension == ".fbx") import.warnings = FbxWarnings(files.Read(files.mesh()).value_or(""));
+  if (extension == ".dae" && files.Read(files.mesh()).value_or("").find("<skew") != std::string::npos)
+    import.problem = "has a <skew>, which is not read: export it with <matrix>, or as .glb";
+  if (!import.problem.empty()) return;
   Assimp::Importer importer;
   importer.SetIOHandler(new ImporterFiles(files, import.warnings));  // the importer owns it
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -361,7 +365,7 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
                                 : "cannot be read: " + reason;
   }
   if (!import.problem.empty()) return;
-  Converter(*scene, LowerExtension(files.mesh()), import).Convert();
+  Converter(*scene, extension, import).Convert();
 }
 
 }  // namespace sim

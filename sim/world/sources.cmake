@@ -1,6 +1,5 @@
 target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/assimp_reader.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/collada_text.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fbx_text.cpp
   ${CMAKE_CURRENT_LIST_DIR}/file_cameras.cpp
   ${CMAKE_CURRENT_LIST_DIR}/gltf_file.cpp
@@ -23,4 +22,5 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/texture.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture_cache.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture_file.cpp
-  ${CMAKE_CURRENT_LIST_DIR}/uv_wrap.cpp)
+  ${CMAKE_CURRENT_LIST_DIR}/uv_wrap.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/xml_text.cpp)

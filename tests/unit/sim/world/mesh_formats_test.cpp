@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "sim/world/collada_text.h"
 #include "sim/world/fbx_text.h"
 #include "sim/world/scene.h"
+#include "sim/world/xml_text.h"
 #include "tests/unit/sim/world/files.h"
 
 namespace sim::test {
@@ -483,7 +483,7 @@ TEST(MeshFormats, ColladaWarnings) {
     return all;
   };
   EXPECT_THAT(warnings("<wrap_s>WRAP</wrap_s>"), IsEmpty());
-  EXPECT_THAT(warnings("<wrap_t>MIRROR</wrap_t>"), testing::ElementsAre(testing::HasSubstr("MIRROR repeats")));
+  EXPECT_THAT(warnings("<wrap_t>BORDER</wrap_t>"), testing::ElementsAre(testing::HasSubstr("texels at its edge")));
   const std::string bind = "<bind_vertex_input\tsemantic = 'UV'\n input_semantic='TEXCOORD' input_set='1'/>",
                     other = "<bind_vertex_input semantic='UV' input_semantic='TEXCOORD' input_set='0'/>";
   EXPECT_THAT(warnings(bind + bind), IsEmpty());
@@ -495,18 +495,109 @@ TEST(MeshFormats, ColladaWarnings) {
   EXPECT_THAT(none, IsEmpty());
 }
 
+// A source of three rows of floats.
+std::string ColladaSource(const std::string& id, const std::string& axes, const std::string& numbers) {
+  std::string text = "<source id='" + id + "'><float_array id='" + id + "a' count='" + std::to_string(3 * axes.size()) +
+                     "'>" + numbers + "</float_array><technique_common>" + "<accessor source='#" + id +
+                     "a' count='3' stride='" + std::to_string(axes.size()) + "'>";
+  for (const char axis : axes) text += std::string("<param name='") + axis + "' type='float'/>";
+  return text + "</accessor></technique_common></source>";
+}
+
+// A triangle with a picture, texture coordinates from 0 to 2. With controllers, the one named k is its instance.
+std::string ColladaPicture(const std::string& version, const std::string& effect, const std::string& controllers = "") {
+  const std::string image = version == "1.5.0" ? "<ref>paint.png</ref>" : "paint.png";
+  return "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='" + version +
+         "'><library_images><image id='i'><init_from>" + image + "</init_from></image></library_images>" +
+         "<library_effects><effect id='e'>" + effect + "</effect></library_effects><library_materials>" +
+         "<material id='m'><instance_effect url='#e'/></material></library_materials><library_geometries>" +
+         "<geometry id='g'><mesh>" + ColladaSource("x", "XYZ", "0 0 0 2 0 0 0 2 0") +
+         ColladaSource("t", "ST", "0 0 2 0 0 2") +
+         "<vertices id='v'><input semantic='POSITION' source='#x'/></vertices><triangles material='m' count='1'>"
+         "<input semantic='VERTEX' source='#v' offset='0'/><input semantic='TEXCOORD' source='#t' offset='1' set='0'/>"
+         "<p>0 0 1 1 2 2</p></triangles></mesh></geometry></library_geometries>" +
+         controllers + "<library_visual_scenes><visual_scene id='w'><node>" +
+         (controllers.empty() ? "<instance_geometry url='#g'>" : "<instance_controller url='#k'>") +
+         "<bind_material><technique_common><instance_material symbol='m' target='#m'/></technique_common>"
+         "</bind_material>" +
+         (controllers.empty() ? "</instance_geometry>" : "</instance_controller>") +
+         "</node></visual_scene></library_visual_scenes><scene><instance_visual_scene url='#w'/></scene></COLLADA>";
+}
+
+// Parameters of effects as 1.4 and 1.5 may have them, with a sampler's wrapping.
+std::vector<std::string> EffectForms(const std::string& wrap) {
+  const std::string surface =
+                        "<newparam sid='s'><surface type='2D'><init_from>i</init_from></surface></newparam>"
+                        "<newparam sid='p'><sampler2D><source>s</source>" +
+                        wrap + "</sampler2D></newparam>",
+                    shader = "<lambert><diffuse><texture texture='p' texcoord='UV'/></diffuse></lambert></technique>",
+                    instance =
+                        "<newparam sid='p'><sampler2D><instance_image url='#i'/>" + wrap + "</sampler2D></newparam>";
+  return {"<profile_COMMON>" + surface + "<technique sid='c'>" + shader + "</profile_COMMON>",
+          surface + "<profile_COMMON><technique sid='c'>" + shader + "</profile_COMMON>",
+          "<profile_COMMON><technique sid='c'>" + surface + shader + "</profile_COMMON>",
+          "<profile_COMMON>" + instance + "<technique sid='c'>" + shader + "</profile_COMMON>"};
+}
+
+TEST(MeshFormats, ColladaPicturesAndTheirWrapping) {
+  const Folder folder;
+  folder.Write("paint.png", EncodeNoise(".png", 8, 4));
+  for (const auto& [mode, u_at_2] : {std::pair{"WRAP", 2.0f}, {"MIRROR", 0.0625f}, {"CLAMP", 0.9375f}}) {
+    const std::vector<std::string> forms = EffectForms(std::string("<wrap_s>") + mode + "</wrap_s>");
+    for (const std::string& form : forms) {
+      const std::string version = &form == &forms.back() ? "1.5.0" : "1.4.1";
+      const Scene scene = LoadScene(WorldOf(folder.Write("m.dae", ColladaPicture(version, form))));
+      EXPECT_THAT(scene.warnings, IsEmpty()) << mode << form;
+      ASSERT_THAT(scene.meshes, SizeIs(1));
+      ASSERT_THAT(scene.textures, SizeIs(1)) << form;
+      const Mesh& mesh = scene.meshes[0];
+      for (std::size_t i = 0; i < mesh.uvs.size(); ++i) {
+        if (mesh.positions[i] != glm::vec3(2, 0, 0)) continue;
+        EXPECT_EQ(mesh.uvs[i].x, u_at_2) << mode << " (edges are half a texel of 8 inside)";
+      }
+      EXPECT_THAT(mesh.positions, testing::Contains(glm::vec3(2, 0, 0)));
+    }
+  }
+}
+
+// The base shape of a morph; its targets are said where they have a weight.
+TEST(MeshFormats, ColladaMorphsAreTheirBase) {
+  const Folder folder;
+  folder.Write("paint.png", EncodeNoise(".png", 8, 4));
+  for (const bool is_moved : {false, true}) {
+    const std::string morph =
+        "<library_controllers><controller id='k'><morph source='#g' method='NORMALIZED'><source id='n'>"
+        "<IDREF_array id='na' count='1'>g</IDREF_array><technique_common><accessor source='#na' count='1' stride='1'>"
+        "<param name='M' type='IDREF'/></accessor></technique_common></source><source id=\"u\">"
+        "<float_array id='ua' count='1'>" +
+        std::string(is_moved ? "0.5" : "0.0") +
+        "</float_array><technique_common><accessor source='#ua' count='1' stride='1'>"
+        "<param name='W' type='float'/></accessor></technique_common></source><targets><input semantic='MORPH_TARGET' "
+        "source='#n'/><input semantic='MORPH_WEIGHT' source='#u'/></targets></morph></controller>"
+        "</library_controllers>";
+    const Scene scene = LoadScene(WorldOf(folder.Write("m.dae", ColladaPicture("1.4.1", EffectForms("")[0], morph))));
+    ASSERT_THAT(scene.meshes, SizeIs(1));
+    EXPECT_THAT(scene.meshes[0].positions, testing::Contains(glm::vec3(2, 0, 0)));
+    if (is_moved) {
+      EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("morph targets are left out")));
+    } else {
+      EXPECT_THAT(scene.warnings, IsEmpty());
+    }
+  }
+}
+
+TEST(MeshFormats, ColladaWithSkewIsRefused) {
+  const Folder folder;
+  const std::string node = "<node id='n'><skew>45 0 1 0 1 0 0</skew><instance_geometry url='#g'/></node>";
+  const WorldDescription world = WorldOf(folder.Write("m.dae", ColladaTriangle("Y_UP", "<lambert/>", node)));
+  EXPECT_THAT(ProblemTextOf([&] { LoadScene(world); }), HasSubstr("<skew>, which is not read"));
+}
+
 // COLLADA with two sets of texture coordinates: the bound one counts, by its number among those of the polygons.
 TEST(MeshFormats, ColladaWithTwoSets) {
   const auto first_corners = [](const std::string& name, int bound, int set, std::vector<std::string>* warnings) {
     const Folder folder;
     folder.Write("paint.png", EncodeNoise(".png", 8, 4));
-    const auto source = [](const std::string& id, const std::string& axes, const std::string& numbers) {
-      std::string text = "<source id='" + id + "'><float_array id='" + id + "a' count='" +
-                         std::to_string(3 * axes.size()) + "'>" + numbers + "</float_array><technique_common>" +
-                         "<accessor source='#" + id + "a' count='3' stride='" + std::to_string(axes.size()) + "'>";
-      for (const char axis : axes) text += std::string("<param name='") + axis + "' type='float'/>";
-      return text + "</accessor></technique_common></source>";
-    };
     const std::string text =
         "<?xml version='1.0'?><COLLADA xmlns='http://www.collada.org/2005/11/COLLADASchema' version='1.4.1'>"
         "<library_images><image id='i'><init_from>paint.png</init_from></image></library_images><library_effects>"
@@ -517,7 +608,8 @@ TEST(MeshFormats, ColladaWithTwoSets) {
         "'/></diffuse></lambert></technique></profile_COMMON>"
         "</effect></library_effects><library_materials><material id='m'><instance_effect url='#e'/></material>"
         "</library_materials><library_geometries><geometry id='g'><mesh>" +
-        source("x", "XYZ", "0 0 0 1 0 0 0 1 0") + source("t", "ST", "0 0 1 0 0 1") + source("l", "ST", "5 5 5 5 5 5") +
+        ColladaSource("x", "XYZ", "0 0 0 1 0 0 0 1 0") + ColladaSource("t", "ST", "0 0 1 0 0 1") +
+        ColladaSource("l", "ST", "5 5 5 5 5 5") +
         "<vertices id='v'><input semantic='POSITION' source='#x'/></vertices><triangles material='m' count='1'>"
         "<input semantic='VERTEX' source='#v' offset='0'/><input semantic='TEXCOORD' source='#t' offset='1' set='" +
         std::to_string(set) + "'/><input semantic='TEXCOORD' source='#l' offset='2' set='" + std::to_string(set + 1) +

@@ -1,0 +1,246 @@
+#include "sim/world/xml_text.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "tools/base/text.h"
+
+namespace sim {
+namespace {
+
+bool IsDigits(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+constexpr std::string_view kBlanks = " \t\r\n";
+
+// Without the blanks at its beginning.
+std::string_view Trimmed(std::string_view text) {
+  return text.substr(std::min(text.find_first_not_of(kBlanks), text.size()));
+}
+
+// An attribute's value in a tag; empty: none.
+std::string_view Attribute(std::string_view tag, const std::string& name) {
+  for (std::size_t at = tag.find(name); at != std::string_view::npos; at = tag.find(name, at + 1)) {
+    std::string_view rest = Trimmed(tag.substr(at + name.size()));
+    if (at == 0 || kBlanks.find(tag[at - 1]) == std::string_view::npos || !rest.starts_with('=')) continue;
+    rest = Trimmed(rest.substr(1));
+    if (rest.empty() || (rest[0] != '"' && rest[0] != '\'')) continue;
+    return rest.substr(1, rest.find(rest[0], 1) - 1);
+  }
+  return {};
+}
+
+// Whether it is a tag of this name.
+bool IsTag(std::string_view tag, std::string_view name) {
+  return tag.starts_with(name) && tag.size() > name.size() && kBlanks.find(tag[name.size()]) != std::string_view::npos;
+}
+
+template <class Call>
+void ForEachTag(std::string_view text, const Call& call) {
+  for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1)) {
+    call(text.substr(at, text.find('>', at) - at));
+  }
+}
+
+// Texture coordinate sets: that of each bound name, and the place of each among those of its polygons, where they have
+// several.
+struct UvSets {
+  std::map<std::string, std::string, std::less<>> of_name;
+  bool has_two = false;  // of one name, in different instances
+  std::map<std::string, std::size_t, std::less<>> place;
+};
+
+UvSets SetsOf(std::string_view text) {
+  UvSets sets;
+  const auto by_number = [](std::string_view a, std::string_view b) {
+    return std::pair(a.size(), a) < std::pair(b.size(), b);
+  };
+  std::set<std::string_view, decltype(by_number)> here;
+  ForEachTag(text, [&](std::string_view tag) {
+    if (IsTag(tag, "<bind_vertex_input") && Attribute(tag, "input_semantic") == "TEXCOORD") {
+      const std::string_view set = Attribute(tag, "input_set");
+      const auto [known, is_new] = sets.of_name.try_emplace(std::string(Attribute(tag, "semantic")), set);
+      sets.has_two = sets.has_two || (!is_new && known->second != set);
+    }
+    if (IsTag(tag, "<input")) {
+      const std::string_view set = Attribute(tag, "set");
+      if (Attribute(tag, "semantic") == "TEXCOORD") here.insert(set.empty() ? "0" : set);
+      return;
+    }
+    std::size_t place = 0;
+    for (const std::string_view set : here) {
+      if (here.size() > 1) sets.place.try_emplace(std::string(set), place++);
+    }
+    here.clear();
+  });
+  return sets;
+}
+
+// The text behind a tag, to the next one.
+std::string_view TextBehind(std::string_view text, std::string_view tag) {
+  const auto end = static_cast<std::size_t>(tag.data() - text.data()) + tag.size() + 1;
+  const std::string_view rest = Trimmed(text.substr(std::min(end, text.size())));
+  return rest.substr(0, std::min(rest.find('<'), rest.find_last_not_of(kBlanks, rest.find('<') - 1) + 1));
+}
+
+// Whether the numbers of the source with this identifier are all 0.
+bool IsZero(std::string_view text, std::string_view source) {
+  const std::size_t at = text.find("id=\"" + std::string(source) + "\""), array = text.find("<float_array", at);
+  if (at == std::string_view::npos || array == std::string_view::npos) return false;
+  return TextBehind(text, text.substr(array, text.find('>', array) - array)).find_first_of("123456789") ==
+         std::string_view::npos;
+}
+
+// A morph's base geometry, by the morph's identifier: both as '#...'.
+std::map<std::string, std::string_view> MorphsOf(std::string_view text, bool& any_weight) {
+  std::map<std::string, std::string_view> bases;
+  std::string_view controller;
+  ForEachTag(text, [&](std::string_view tag) {
+    if (IsTag(tag, "<controller")) controller = Attribute(tag, "id");
+    if (IsTag(tag, "<morph")) bases["#" + std::string(controller)] = Attribute(tag, "source");
+    if (!IsTag(tag, "<input") || Attribute(tag, "semantic") != "MORPH_WEIGHT") return;
+    const std::string_view source = Attribute(tag, "source");
+    any_weight = any_weight || !IsZero(text, source.substr(std::min<std::size_t>(source.size(), 1)));
+  });
+  return bases;
+}
+
+// Parameters of an effect, which assimp reads within a profile alone: what each names (a parameter or an image), and the
+// wrapping of samplers.
+struct Parameters {
+  std::map<std::string, std::string_view, std::less<>> names;
+  std::map<std::string, std::array<std::string_view, 2>, std::less<>> wrap;
+  std::string at_hand;
+
+  void Read(std::string_view text, std::string_view tag) {
+    if (IsTag(tag, "<effect")) *this = {};
+    if (IsTag(tag, "<newparam")) at_hand = Attribute(tag, "sid");
+    if (tag == "</newparam") at_hand.clear();
+    if (at_hand.empty()) return;
+    if (tag == "<init_from" || tag == "<source" || tag == "<ref") names[at_hand] = TextBehind(text, tag);
+    if (IsTag(tag, "<instance_image") && Attribute(tag, "url").size() > 1)
+      names[at_hand] = Attribute(tag, "url").substr(1);
+    if (tag == "<wrap_s") wrap[at_hand][0] = TextBehind(text, tag);
+    if (tag == "<wrap_t") wrap[at_hand][1] = TextBehind(text, tag);
+  }
+  // The image at the end of the chain.
+  std::string_view Image(std::string_view name) const {
+    for (std::size_t steps = 0; steps <= names.size(); ++steps) {
+      const auto next = names.find(name);
+      if (next == names.end() || next->second.empty()) break;
+      name = next->second;
+    }
+    return name;
+  }
+  // assimp's properties of a texture with this sampler; empty: it repeats.
+  std::string Wrapping(std::string_view sampler) const {
+    const auto at = wrap.find(sampler);
+    std::string text;
+    for (std::size_t i = 0; at != wrap.end() && i < 2; ++i) {
+      const std::string_view mode = at->second[i];
+      const std::string axis = i == 0 ? "U>" : "V>";
+      if (mode == "MIRROR") text += "<mirror" + axis + "1</mirror" + axis;
+      if (mode == "CLAMP" || mode == "BORDER" || mode == "NONE") text += "<wrap" + axis + "0</wrap" + axis;
+    }
+    return text.empty() ? "" : "<extra><technique profile=\"MAYA\">" + text + "</technique></extra>";
+  }
+};
+
+}  // namespace
+
+std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& warnings) {
+  const UvSets sets = SetsOf(text);
+  bool any_weight = false;
+  const auto morphs = MorphsOf(text, any_weight);
+  std::set<std::string> unbound;
+  std::string out;
+  out.reserve(text.size());
+  bool skips = false;
+  const auto append = [&](std::string_view part) {
+    for (const char c : part) {
+      if (c == '<') out.erase(out.find_last_not_of(kBlanks) + 1);
+      skips = c == '>' || (skips && std::isspace(static_cast<unsigned char>(c)) != 0);
+      if (!skips || c == '>') out += c;
+    }
+  };
+  std::size_t done = 0;
+  const auto replace = [&](std::string_view part, std::string_view by) {
+    const auto at = static_cast<std::size_t>(part.data() - text.data());
+    if (at < done) return;
+    append(text.substr(done, at - done));
+    append(by);
+    done = at + part.size();
+  };
+  Parameters parameters;
+  bool has_diffuse = false, has_emission = false;  // of the shader at hand
+  bool is_morph = false;                           // the controller at hand
+  ForEachTag(text, [&](std::string_view tag) {
+    has_diffuse = has_diffuse || tag.starts_with("<diffuse");
+    has_emission = has_emission || tag.starts_with("<emission");
+    for (const std::string shader : {"constant", "lambert", "phong", "blinn"}) {
+      if (tag.starts_with("<" + shader)) has_diffuse = has_emission = false;
+      if (!tag.starts_with("</" + shader) || has_diffuse || !has_emission) continue;
+      replace(tag.substr(0, 0), "<diffuse><color>0 0 0 1</color></diffuse>");  // assimp's default is 0.6
+    }
+    parameters.Read(text, tag);
+    const auto whole = static_cast<std::size_t>(tag.data() - text.data()), end = whole + tag.size() + 1;
+    const std::string_view version = IsTag(tag, "<COLLADA") ? Attribute(tag, "version") : "";
+    if (version.starts_with("1.5")) replace(version, "1.4.1");
+    if (tag == "<ref" || tag == "</ref" || IsTag(tag, "<instance_image"))  // COLLADA 1.5's
+      replace(text.substr(whole, tag.size() + 1), "");
+    if (IsTag(tag, "<controller") && morphs.contains("#" + std::string(Attribute(tag, "id"))))
+      replace(text.substr(whole, text.find("</controller>", whole) + 13 - whole), "");
+    const bool is_instance = IsTag(tag, "<instance_controller");
+    const std::string_view controller = is_instance           ? Attribute(tag, "url")
+                                        : IsTag(tag, "<skin") ? Attribute(tag, "source")
+                                                              : "";
+    if (const auto morph = morphs.find(std::string(controller)); morph != morphs.end()) {
+      is_morph = is_instance;
+      if (is_instance) replace(tag.substr(1, 19), "instance_geometry");
+      replace(controller, morph->second);
+    }
+    if (is_morph && tag == "</instance_controller") {
+      replace(tag, "</instance_geometry");
+      is_morph = false;
+    }
+    if (!IsTag(tag, "<texture")) return;
+    const std::string_view sampler = Attribute(tag, "texture"), name = Attribute(tag, "texcoord");
+    const auto bound = sets.of_name.find(name);
+    const std::string_view set = bound != sets.of_name.end() ? bound->second : IsDigits(name) ? name : "";
+    const auto place = sets.place.find(set);
+    const std::string place_text = place == sets.place.end() ? "0" : std::to_string(place->second);
+    const auto name_sampler = [&] {
+      if (!sampler.empty()) replace(sampler, parameters.Image(sampler));
+    };
+    if (sampler.data() < name.data()) name_sampler();
+    if (!name.empty()) replace(name, place_text);
+    if (sampler.data() > name.data()) name_sampler();
+    if (!name.empty() && set.empty() && !sets.place.empty()) unbound.insert("'" + std::string(name) + "'");
+    const std::string wrapping = parameters.Wrapping(sampler);
+    const bool is_closed = tag.ends_with('/');
+    if (!wrapping.empty())
+      replace(text.substr(is_closed ? end - 2 : std::min(end, text.size()), is_closed ? 1 : 0),
+              is_closed ? ">" + wrapping + "</texture" : wrapping);
+  });
+  append(text.substr(done));
+  if (sets.has_two) warnings.push_back("a name of texture coordinates is bound to several sets: the first is used");
+  if (any_weight) warnings.push_back("morph targets are left out: the base shape is drawn");
+  const auto has = [&](std::string_view part) { return text.find(part) != std::string_view::npos; };
+  for (const std::string wrap : {"BORDER", "NONE"})
+    if (has("<wrap_s>" + wrap) || has("<wrap_t>" + wrap))
+      warnings.push_back("a texture whose wrapping is " + wrap + " ends with the texels at its edge");
+  if (has("=\"RGB_ZERO\"")) warnings.push_back("transparency of the kind RGB_ZERO is taken for A_ONE");
+  if (has("<param ref=")) warnings.push_back("colours that are parameters (<param ref>) are not read");
+  if (!unbound.empty())
+    warnings.push_back("texture coordinates that are bound to no set (bind_vertex_input) are those of the first: " +
+                       base::Join({unbound.begin(), unbound.end()}, ", "));
+  return out;
+}
+
+}  // namespace sim
