@@ -63,15 +63,16 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
       return nullptr;
     }
     files_.Opened(file, stream->FileSize());
-    if (LowerExtension(file) == ".dae") return Collada(file);
+    if (LowerExtension(file) == ".dae") return Rewritten(file, ColladaForAssimp);
+    if (LowerExtension(file) == ".x3d") return Rewritten(file, X3dForAssimp);
     if (LowerExtension(file) == ".stl" && IsOfMagics(*stream)) return MagicsStl(file);
     return new BoundedStream(std::move(stream));  // Close() deletes it
   }
 
  private:
-  Assimp::IOStream* Collada(const fs::path& file) {
+  Assimp::IOStream* Rewritten(const fs::path& file, std::string rewrite(std::string_view, std::vector<std::string>&)) {
     warnings_.clear();  // assimp opens the file several times
-    return Memory(ColladaForAssimp(base::ReadFile(file).value_or(""), warnings_));
+    return Memory(rewrite(base::ReadFile(file).value_or(""), warnings_));
   }
 
   static bool IsOfMagics(Assimp::IOStream& stream) {
@@ -268,7 +269,7 @@ class Converter {
     if (in.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
       aiColor3D diffuse(1, 1, 1);
       // A texture takes the colour's place; in glTF 1.0, where assimp gives black, too.
-      static constexpr std::array kReplacing{".fbx", ".3ds", ".ase", ".gltf", ".glb"};
+      static constexpr std::array kReplacing{".fbx", ".3ds", ".ase", ".x3d", ".gltf", ".glb"};
       const bool is_replaced = has(base) && std::ranges::find(kReplacing, extension_) != kReplacing.end();
       if (!is_replaced) in.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse);
       color = {diffuse.r, diffuse.g, diffuse.b, 1};
@@ -311,6 +312,7 @@ class Converter {
     for (const std::size_t axis : {0u, 1u}) {
       int mode = aiTextureMapMode_Wrap;
       in.Get(axis == 0 ? "$tex.mapmodeu" : "$tex.mapmodev", type, 0, mode);
+      if (extension_ == ".x3d") mode = mode == 0 ? aiTextureMapMode_Clamp : aiTextureMapMode_Wrap;  // it is repeatS, T
       if (mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal) map.uv.wrap[axis] = UvWrap::clamp;
       if (mode == aiTextureMapMode_Mirror) map.uv.wrap[axis] = UvWrap::mirror;
     }

@@ -633,6 +633,40 @@ TEST(MeshFormats, ColladaWithTwoSets) {
   EXPECT_THAT(warnings, ElementsAre(HasSubstr("bound to no set")));
 }
 
+// X3D with a picture by a list of URLs, as Blender writes it; textures repeat unless they say otherwise.
+TEST(MeshFormats, X3dPictures) {
+  const Folder folder;
+  folder.Write("paint.png", EncodeNoise(".png", 8, 4));
+  for (const std::string url : {R"(url="paint.png")", R"(url='"paint.png"')", R"(url=' "paint.png", "b/paint.png"')",
+                                R"(url="&quot;paint.png&quot; &quot;c.png&quot;")"}) {
+    for (const bool repeats : {true, false}) {
+      const Scene scene = LoadScene(WorldOf(folder.Write(
+          "m.x3d",
+          "<?xml version='1.0'?><X3D profile='Immersive' version='3.0'><Scene><Shape><Appearance><ImageTexture " + url +
+              (repeats ? "" : " repeatS='false'") +
+              "/><Material diffuseColor='0.5 0 0'/></Appearance><IndexedFaceSet coordIndex='0 1 2 -1' "
+              "texCoordIndex='0 1 2 -1'><Coordinate point='0 0 0 2 0 0 0 2 0'/><TextureCoordinate point='0 0 2 0 0 2'/>"
+              "</IndexedFaceSet></Shape></Scene></X3D>")));
+      EXPECT_THAT(scene.warnings, IsEmpty()) << url;
+      ASSERT_THAT(scene.textures, SizeIs(1)) << url;
+      EXPECT_EQ(scene.materials.at(static_cast<std::size_t>(scene.meshes.at(0).material)).base_color, glm::vec3(1));
+      EXPECT_THAT(scene.meshes[0].uvs, testing::Contains(glm::vec2(repeats ? 2.0f : 0.9375f, 1)));
+    }
+  }
+}
+
+TEST(MeshFormats, X3dWarnings) {
+  const auto warnings = [](std::string_view text) {
+    std::vector<std::string> all;
+    EXPECT_EQ(X3dForAssimp(text, all), text);
+    return all;
+  };
+  EXPECT_THAT(warnings("<IndexedFaceSet colorPerVertex='true'/><Coordinate USE='c'/>"), IsEmpty());
+  EXPECT_THAT(warnings("<IndexedFaceSet colorPerVertex='false'/>"), ElementsAre(HasSubstr("colours of faces")));
+  EXPECT_THAT(warnings("<Shape DEF='a'/><Shape USE='a'/>"), ElementsAre(HasSubstr("several places (USE)")));
+  EXPECT_THAT(warnings("<Inline url='b.x3d'/>"), ElementsAre(HasSubstr("(Inline) are not read")));
+}
+
 // Truncation: a file is refused or gives a smaller world (a PLY or OBJ without its end may be valid).
 TEST(MeshFormats, TruncatedFilesEndWell) {
   const Folder folder;
