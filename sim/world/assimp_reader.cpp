@@ -267,11 +267,18 @@ class Converter {
         has(aiTextureType_EMISSION_COLOR) ? aiTextureType_EMISSION_COLOR : aiTextureType_EMISSIVE;
     aiColor4D color(1, 1, 1, 1);
     if (in.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS) {
-      aiColor3D diffuse(1, 1, 1);
+      aiColor3D diffuse;
       // A texture takes the colour's place; in glTF 1.0, where assimp gives black, too.
       static constexpr std::array kReplacing{".fbx", ".3ds", ".ase", ".x3d", ".gltf", ".glb"};
       const bool is_replaced = has(base) && std::ranges::find(kReplacing, extension_) != kReplacing.end();
-      if (!is_replaced) in.Get(AI_MATKEY_COLOR_DIFFUSE, diffuse);
+      // The names of Maya's and 3ds Max' physical materials in FBX; of a missing colour assimp makes black.
+      static constexpr const char* kNames[] = {"$clr.diffuse", "$raw.Maya|baseColor",
+                                               "$raw.3dsMax|Parameters|base_color"};
+      const bool is_found = !is_replaced && std::ranges::any_of(kNames, [&](auto name) {
+        return in.Get(name, 0, 0, diffuse) == AI_SUCCESS;
+      });
+      if (!is_found) diffuse = {1, 1, 1};
+      if (!is_found && !is_replaced && !has(base)) import_.warnings.push_back("a material without a colour is white");
       color = {diffuse.r, diffuse.g, diffuse.b, 1};
     }
     const bool is_default = color.r == 0.6f && color.g == 0.6f && color.b == 0.6f;  // assimp's, of STL

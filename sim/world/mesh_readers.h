@@ -20,6 +20,10 @@ void ReadObj(MeshFiles& files, MeshImport& import);
 // MeshLab (VCGlib) writes them, names of properties as MeshLab, Blender, Open3D and CloudCompare do.
 void ReadPly(MeshFiles& files, MeshImport& import);
 
+// OFF in text, with normals, texture coordinates and colours of vertices (NOFF, STOFF, COFF) and colours of faces.
+// Source: Geomview manual, "OFF: Object File Format".
+void ReadOff(MeshFiles& files, MeshImport& import);
+
 // glTF 2.0 (.gltf, .glb): the default scene, without animations. Throws OlderGltf for glTF 1.0. An unsupported
 // extension is import.problem where the file requires it, and a warning where the file uses it.
 // Source: Khronos, "glTF 2.0 Specification"; KHR_texture_transform, KHR_materials_unlit,

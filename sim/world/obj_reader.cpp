@@ -86,7 +86,8 @@ class ObjReader {
     } else if (word == "mtllib") {
       Library(rest);
     } else {
-      known_ = known_ || word == "l" || word == "p";
+      surfaces_ += word == "surf";
+      known_ = known_ || word == "l" || word == "p" || word == "surf";
       return;
     }
     known_ = true;
@@ -184,7 +185,12 @@ class ObjReader {
   void Build() {
     if (!known_) return Fail("cannot be read: has no statement of an OBJ file (in ASCII or UTF-8)");
     if (parts_.empty())
-      return Fail("has no triangles: points, lines and curves are not rendered; convert them to faces first");
+      return Fail(
+          "has no triangles: points, lines, curves and free-form surfaces are not rendered; convert them to faces "
+          "first");
+    if (surfaces_ > 0)
+      import_.warnings.push_back(std::to_string(surfaces_) +
+                                 " of its surfaces are free-form (surf): they are left out");
     Box used;
     for (const Part& part : parts_) used.Add(part.polygons, pools_);
     import_.origin = OriginFor(used);
@@ -212,7 +218,7 @@ class ObjReader {
 
   MeshFiles& files_;
   MeshImport& import_;
-  int line_ = 0, problem_count_ = 0;
+  int line_ = 0, problem_count_ = 0, surfaces_ = 0;
   std::string problems_;
   bool known_ = false, any_library_ = false;
   PolygonPools pools_;

@@ -16,6 +16,7 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/mesh_loader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/mesh_material.cpp
   ${CMAKE_CURRENT_LIST_DIR}/obj_reader.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/off_reader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/ply_reader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/sky.cpp

@@ -225,7 +225,8 @@ Record Setting(const std::string& name, int value) {
   return {"P", {Text(name), Text("int"), Text("Integer"), Text(""), Int(value)}, {}};
 }
 
-std::string FbxTriangle(const std::vector<Record>& settings) {
+std::string FbxTriangle(const std::vector<Record>& settings,
+                        const Record& color = Vector("DiffuseColor", 0.125, 0.25, 0.75)) {
   const std::string separator("\0\1", 2);
   const std::vector<Record> records = {
       {"FBXHeaderExtension", {}, {{"FBXVersion", {Int(7400)}, {}}}},
@@ -249,8 +250,7 @@ std::string FbxTriangle(const std::vector<Record>& settings) {
          {{"Properties70", {}, {Vector("Lcl Translation", 10, 0, 0)}}}},
         {"Material",
          {Long(3), Text("paint" + separator + "Material"), Text("")},
-         {{"ShadingModel", {Text("lambert")}, {}},
-          {"Properties70", {}, {Vector("DiffuseColor", 0.125, 0.25, 0.75)}}}}}},
+         {{"ShadingModel", {Text("lambert")}, {}}, {"Properties70", {}, {color}}}}}},
       {"Connections",
        {},
        {{"C", {Text("OO"), Long(2), Long(0)}, {}},
@@ -275,6 +275,25 @@ TEST(MeshFormats, BinaryFbx) {
   const Scene z_up = load({metre, Setting("UpAxis", 2), Setting("UpAxisSign", 1), Setting("FrontAxis", 1),
                            Setting("FrontAxisSign", -1), Setting("CoordAxis", 0), Setting("CoordAxisSign", 1)});
   EXPECT_THAT(z_up.meshes.at(0).positions, testing::Contains(glm::vec3(11, 3, -2)));
+}
+
+// Physical materials without a diffuse colour, and materials without any.
+TEST(MeshFormats, FbxMaterialsWithoutADiffuseColour) {
+  const Folder folder;
+  const auto load = [&](const std::string& name) {
+    return LoadScene(WorldOf(folder.Write("t.fbx", FbxTriangle({Setting("UpAxis", 1)}, Vector(name, 0.5, 0.25, 0)))));
+  };
+  const auto color = [](const Scene& scene) {
+    return scene.materials.at(static_cast<std::size_t>(scene.meshes.at(0).material)).base_color;
+  };
+  for (const std::string name : {"Maya|baseColor", "3dsMax|Parameters|base_color"}) {
+    const Scene scene = load(name);
+    EXPECT_EQ(color(scene), glm::vec3(0.5f, 0.25f, 0)) << name;
+    EXPECT_THAT(scene.warnings, IsEmpty());
+  }
+  const Scene none = load("Weight");
+  EXPECT_EQ(color(none), glm::vec3(1));
+  EXPECT_THAT(none.warnings, ElementsAre(HasSubstr("a material without a colour is white")));
 }
 
 // Properties that assimp leaves out and that change the picture, in both encodings.
@@ -665,6 +684,34 @@ TEST(MeshFormats, X3dWarnings) {
   EXPECT_THAT(warnings("<IndexedFaceSet colorPerVertex='false'/>"), ElementsAre(HasSubstr("colours of faces")));
   EXPECT_THAT(warnings("<Shape DEF='a'/><Shape USE='a'/>"), ElementsAre(HasSubstr("several places (USE)")));
   EXPECT_THAT(warnings("<Inline url='b.x3d'/>"), ElementsAre(HasSubstr("(Inline) are not read")));
+}
+
+// OFF: colours of vertices and of faces, which stay on their face, and the forms of the header.
+TEST(MeshFormats, Off) {
+  const Folder folder;
+  const auto load = [&](const std::string& text) { return LoadScene(WorldOf(folder.Write("m.off", text))); };
+  const std::string square = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  const Scene faces = load("OFF # two\n4 2 0\n" + square + "3 0 1 2 255 0 0 255\n3 0 2 3 \n");
+  EXPECT_THAT(faces.warnings, IsEmpty());
+  std::vector<glm::vec3> colors;
+  for (const glm::uvec3& t : faces.meshes.at(0).triangles) {
+    const auto& of = faces.meshes[0].colors;
+    EXPECT_TRUE(of[t.x] == of[t.y] && of[t.y] == of[t.z]);
+    colors.emplace_back(of[t.x]);
+  }
+  EXPECT_THAT(colors, ElementsAre(glm::vec3(1, 0, 0), glm::vec3(1))) << "white where none is given";
+  const Scene vertices = load(
+      "STNCOFF4 1 0\n0 0 0 0 0 1 1 0 0 1 0.5 0.25\n1 0 0 0 0 1 1 0 0 1 0 0\n"
+      "1 1 0 0 0 1 1 0 0 1 0 0\n0 1 0 0 0 1 1 0 0 1 0 0\n4 0 1 2 3\n");
+  EXPECT_THAT(vertices.meshes.at(0).colors, testing::Each(glm::vec3(1, 0, 0)));
+  EXPECT_THAT(vertices.meshes[0].normals, testing::Each(glm::vec3(0, 0, 1)));
+  EXPECT_THAT(vertices.meshes[0].triangles, SizeIs(2));
+  EXPECT_THAT(load("4 1 0\n" + square + "4 0 1 2 3\n").meshes.at(0).colors, IsEmpty()) << "no header";
+  const auto problem = [&](const std::string& text) { return ProblemTextOf([&] { load(text); }); };
+  EXPECT_THAT(problem("OFF BINARY\n"), HasSubstr("OFF of another kind"));
+  EXPECT_THAT(problem("OFF\n4 2 0\n" + square + "3 0 1 2\n"), HasSubstr("ends too early"));
+  EXPECT_THAT(problem("OFF\n4 1 0\n" + square + "3 0 1 4\n"), HasSubstr("line 7: a face names a vertex"));
+  EXPECT_THAT(problem("OFF\n4 1 0\n" + square + "3 0 1\n"), HasSubstr("line 7: a face lacks vertices"));
 }
 
 // Truncation: a file is refused or gives a smaller world (a PLY or OBJ without its end may be valid).

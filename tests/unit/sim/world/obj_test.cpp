@@ -13,6 +13,7 @@ namespace sim::test {
 namespace {
 
 using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -277,7 +278,10 @@ TEST_F(Obj, StrayVerticesDoNotCount) {
 }
 
 TEST_F(Obj, PointsAndLinesAreRefusedByName) {
-  EXPECT_THAT(Problems("v 0 0 0\nv 1 0 0\nl 1 2\np 1\n"), HasSubstr("points, lines and curves are not rendered"));
+  EXPECT_THAT(Problems("v 0 0 0\nv 1 0 0\nl 1 2\np 1\n"),
+              HasSubstr("points, lines, curves and free-form surfaces are not"));
+  EXPECT_THAT(Load(std::string(kFace) + "cstype bspline\nsurf 0 1 0 1 1 2 3\nend\n").warnings,
+              Contains(HasSubstr("1 of its surfaces are free-form (surf)")));
 }
 
 TEST_F(Obj, FoldersInOtherCapitals) {
