@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "tools/base/limits/jpeg.h"
+
 namespace limits {
 namespace {
 
@@ -15,6 +17,7 @@ using Bytes = std::span<const std::uint8_t>;
 
 struct Size {
   std::int64_t width = 0, height = 0;
+  bool is_log_luv = false;  // a TIFF that is coded so: decoders take its codes for colours
 };
 
 std::int64_t Number(Bytes file, std::size_t at, std::size_t count, bool little) {
@@ -69,9 +72,10 @@ Size OfTiff(Bytes file, bool little) {
     if (tag == 257) picture.height = value;
     if (tag == 322) tile.width = value;
     if (tag == 323) tile.height = value;
+    if (tag == 259) picture.is_log_luv = value == 34676 || value == 34677;
   }
   if (picture.width < 1 || picture.height < 1) return {};
-  return {std::max(picture.width, tile.width), std::max(picture.height, tile.height)};
+  return {std::max(picture.width, tile.width), std::max(picture.height, tile.height), picture.is_log_luv};
 }
 
 Size OfWebp(Bytes file) {
@@ -241,28 +245,6 @@ std::string PngEndProblem(Bytes file) {
   }
 }
 
-std::string JpegEndProblem(Bytes file) {
-  constexpr std::uint8_t kStartOfScan = 0xda, kEndOfImage = 0xd9;
-  const char* const truncated = "truncated JPEG: the end marker is missing";
-  bool in_scan = false;
-  for (std::size_t at = 2;;) {
-    if (in_scan) {  // entropy-coded data goes on until a marker that is neither a stuffed zero nor a restart
-      while (at + 1 < file.size() &&
-             (file[at] != 0xff || file[at + 1] == 0x00 || (file[at + 1] >= 0xd0 && file[at + 1] <= 0xd7))) {
-        ++at;
-      }
-    }
-    while (at + 1 < file.size() && file[at] == 0xff && file[at + 1] == 0xff) ++at;  // fill bytes
-    if (at + 2 > file.size()) return truncated;
-    if (file[at] != 0xff) return "damaged JPEG: no marker at byte " + std::to_string(at);
-    const std::uint8_t marker = file[at + 1];
-    if (marker == kEndOfImage) return "";
-    if (at + 4 > file.size()) return truncated;
-    at += 2 + static_cast<std::size_t>(Number(file, at + 2, 2, false));
-    in_scan = marker == kStartOfScan;
-  }
-}
-
 }  // namespace
 
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes) {
@@ -287,6 +269,7 @@ std::string PictureProblem(Bytes file) {
   if (!size) return "not a picture that is read here (PNG, JPEG, BMP, TIFF, TGA, WebP, PNM, HDR): convert it to PNG";
   if (std::string problem = PictureSizeProblem(size->width, size->height, file.size()); !problem.empty())
     return problem;
+  if (size->is_log_luv) return "a TIFF coded as LogLuv (SGI), which is not read: convert it to HDR or PNG";
   if (const std::int64_t largest = IsPnm(file) ? OfPnm(file).largest : 255; largest != 255 && largest != 65535)
     return "a PNM picture whose largest value is " + std::to_string(largest) + ", not 255 or 65535: convert it to PNG";
   return "";
@@ -303,7 +286,7 @@ bool IsTga(Bytes file) {
 
 std::string PictureEndProblem(Bytes file) {
   if (Begins(file, "\x89PNG\r\n\x1a\n")) return PngEndProblem(file);
-  return Begins(file, "\xff\xd8") ? JpegEndProblem(file) : "";
+  return Begins(file, "\xff\xd8") ? JpegProblem(file) : "";
 }
 
 std::string ExrProblem(Bytes file) {

@@ -26,8 +26,8 @@ std::string PictureProblem(std::span<const std::uint8_t> file);
 // Source: Truevision, "TGA File Format Specification", version 2.0.
 bool IsTga(std::span<const std::uint8_t> file);
 
-// Part missing at the end of a PNG or JPEG file, which decoders complete with grey; empty: nothing, and for other
-// kinds. Bytes after the end are ignored: cameras pad their files.
+// Part missing at the end of a PNG or JPEG file, or damaged within a JPEG, which decoders complete with grey; empty:
+// nothing, and for other kinds. Bytes after the end are ignored: cameras pad their files.
 std::string PictureEndProblem(std::span<const std::uint8_t> file);
 
 // Problem of a whole OpenEXR file, by its header; empty: none. The library (3.1) allocates any attribute size that the

@@ -96,6 +96,17 @@ TEST(Picture, TilesOfTiffCount) {
   EXPECT_THAT(Problem(file), StartsWith("60000 x 60000 pixels"));
 }
 
+TEST(Picture, TiffOfLogLuvIsNotRead) {
+  const auto entry = [](int tag, std::uint64_t value) {
+    return Little(static_cast<std::uint64_t>(tag), 2) + Little(3, 2) + Little(1, 4) + Little(value, 4);
+  };
+  for (const std::uint64_t coding : {1, 5, 34676, 34677}) {
+    const std::string problem = Problem(std::string("II*\0", 4) + Little(8, 4) + Little(3, 2) + entry(256, 8) +
+                                        entry(257, 8) + entry(259, coding));
+    EXPECT_EQ(problem.starts_with("a TIFF coded as LogLuv"), coding > 5) << coding << problem;
+  }
+}
+
 TEST(Picture, OtherKindsAreNotRead) {
   for (const std::string& file :
        {std::string("GIF89a") + std::string(20, 'x'), std::string("\x59\xa6\x6a\x95") + std::string(40, '\0'),

@@ -102,6 +102,32 @@ TEST(ImageFile, EveryFlippedByteOfAPngIsRefused) {
   }
 }
 
+// Damage within a JPEG: bytes that are overwritten, or missing, and a lost restart marker; padding is none.
+TEST(ImageFile, JpegDamagedInTheMiddle) {
+  for (const int restart : {0, 3}) {
+    for (const int type : {CV_8UC1, CV_8UC3}) {
+      cv::Mat picture(77, 91, type);
+      cv::randu(picture, 0, 255);
+      std::vector<std::uint8_t> bytes;
+      cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_RST_INTERVAL, restart});
+      const std::string whole(bytes.begin(), bytes.end());
+      EXPECT_EQ(Complaint(whole), "none");
+      EXPECT_EQ(Complaint(whole.substr(0, whole.size() - 2) + std::string(40, '\0') + "\xff\xd9"), "none");
+      const std::size_t middle = whole.size() / 2;
+      std::string zeros = whole;
+      zeros.replace(middle, 100, 100, '\0');
+      EXPECT_THAT(Complaint(zeros), testing::StartsWith("damaged JPEG: its data"));
+      EXPECT_THAT(Complaint(whole.substr(0, middle) + whole.substr(middle + 200)),
+                  testing::StartsWith("damaged JPEG: its data"));
+      if (restart == 0) continue;
+      std::string lost = whole;
+      const std::size_t marker = whole.find("\xff\xd3", 700);
+      ASSERT_NE(marker, std::string::npos);
+      EXPECT_THAT(Complaint(lost.erase(marker, 2)), testing::StartsWith("damaged JPEG: its data"));
+    }
+  }
+}
+
 TEST(ImageFile, JpegWithAShortThumbnail) {
   const std::string whole = EncodeNoise(".jpg", 24, 17), thumbnail = EncodeNoise(".jpg", 8, 8);
   const std::size_t length = thumbnail.size() + 2;
