@@ -93,15 +93,20 @@ std::optional<std::size_t> AxisOf(const std::string& name) {
   return is_position ? std::optional(1 + axis) : std::nullopt;
 }
 
-// The part below a second of a stamp in two columns.
-bool IsNanoseconds(std::string_view name) { return EndsInAny(name, {"nsec", "nsecs", "nanosec"}); }
+// Digits of a part below a second, as a stamp in two columns has it; 0: it is none.
+std::size_t FractionDigits(std::string_view name) {
+  return EndsInAny(name, {"nsec", "nsecs", "nanosec"})    ? 9
+         : EndsInAny(name, {"usec", "usecs", "microsec"}) ? 6
+         : EndsInAny(name, {"msec", "msecs", "millisec"}) ? 3
+                                                          : 0;
+}
 
 bool IsSeconds(std::string_view name) { return EndsInAny(name, {"sec", "secs", "seconds"}); }
 
 // Rank of a name as that of the stamps; 0: it is none. That of a message's header comes before the time of its arrival,
-// and both before whole seconds. is_split: nanoseconds have a column.
+// and both before whole seconds. is_split: the part below a second has a column.
 int RankAsStamp(const std::string& name, bool is_split) {
-  if (IsNanoseconds(name)) return 0;
+  if (FractionDigits(name) == 9 || (is_split && FractionDigits(name) > 0)) return 0;
   if (IsSeconds(name) && !(is_split && HasAny(name, {"stamp"}))) return 1;
   return HasAny(name, {"stamp"}) ? 3 : name == "t" || HasAny(name, {"time"}) ? 2 : 0;
 }
@@ -125,7 +130,7 @@ int ExponentOf(std::string_view cell) {
 
 struct Named {
   std::array<std::optional<std::size_t>, PoseHeader::kPose> columns;
-  std::optional<std::size_t> nanoseconds = {};
+  std::optional<std::size_t> fraction = {};
   bool has_two_poses = false;
   bool is_complete() const {
     return std::ranges::all_of(columns, [](const auto& c) { return c.has_value(); });
@@ -155,7 +160,10 @@ Named Assign(std::span<const std::string> names) {
         return std::optional(name.back() == 'w' ? kW : 4 + static_cast<std::size_t>(name.back() - 'x'));
     return AxisOf(name);
   };
-  const auto below = std::ranges::find_if(names, IsNanoseconds);
+  const bool has_seconds =
+      std::ranges::any_of(names, [](const auto& name) { return IsSeconds(name) && FractionDigits(name) == 0; });
+  const auto below = std::ranges::find_if(
+      names, [&](const auto& name) { return FractionDigits(name) == 9 || (has_seconds && FractionDigits(name) > 0); });
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (const int r = RankAsStamp(names[i], below != names.end()); r > rank) {
       found.columns[kStamp] = i;
@@ -166,7 +174,7 @@ Named Assign(std::span<const std::string> names) {
     }
   }
   if (below != names.end() && found.columns[kStamp] && IsSeconds(names[*found.columns[kStamp]]))
-    found.nanoseconds = static_cast<std::size_t>(below - names.begin());
+    found.fraction = static_cast<std::size_t>(below - names.begin());
   if (found.columns[1] || found.columns[2] || found.columns[3]) return found;
   if (const std::vector<std::string> others = StemsOf(names, false); others.size() == 1) {  // such as cam_x
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -237,12 +245,13 @@ std::optional<PoseHeader> ReadPoseHeader(std::string_view written, std::string& 
     exponents.push_back(exponent);
   }
   Named found = Assign(names);
-  PoseHeader header{{}, names.size(), false, 0, found.nanoseconds};
+  PoseHeader header{{}, names.size(), false, 0, found.fraction};
+  if (header.fraction) header.fraction_digits = FractionDigits(names[*header.fraction]);
   for (std::size_t first = 0; is_prose && first + PoseHeader::kPose <= names.size(); ++first) {
     const Named run = Assign(std::span(names).subspan(first, PoseHeader::kPose));
     if (!run.is_complete()) continue;
     header.is_prose = true;
-    header.nanoseconds.reset();
+    header.fraction.reset();
     found = run;
     for (auto& column : found.columns) *column += first;
     break;

@@ -22,10 +22,11 @@ bool StatesRealPartFirst(std::string_view comment);
 struct PoseHeader {
   static constexpr std::size_t kPose = 8;
   std::array<std::size_t, kPose> columns{};
-  std::size_t count = 0;                        // of named columns
-  bool is_prose = false;                        // words, of which the eight follow each other: those of a row of eight
-  int exponent = 0;                             // of a stamp's unit, in powers of ten: -9 for nanoseconds
-  std::optional<std::size_t> nanoseconds = {};  // column of a stamp's part below a second, where it has its own
+  std::size_t count = 0;                     // of named columns
+  bool is_prose = false;                     // words, of which the eight follow each other: those of a row of eight
+  int exponent = 0;                          // of a stamp's unit, in powers of ten: -9 for nanoseconds
+  std::optional<std::size_t> fraction = {};  // column of a stamp's part below a second, where it has its own
+  std::size_t fraction_digits = 9;           // of its unit: nano-, micro- or milliseconds
 };
 
 // None for a comment. problem: a header that names some columns of a pose, and not all, or two poses.

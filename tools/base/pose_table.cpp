@@ -28,6 +28,9 @@ std::string KindOf(std::string_view line) {
       {"#ROSBAG", "is a ROS bag: export its poses as a table"},
       {"version https://git-lfs", "is a pointer of Git LFS, not the file: fetch it with `git lfs pull`"},
       {"VERTEX_", "is a graph of g2o, whose poses have no times: add them"},
+      {"Format Version,",
+       "is Motive's export (OptiTrack), whose header is several lines: write one in their place, such as "
+       "frame,timestamp,qx,qy,qz,qw,tx,ty,tz, and positions in metres"},
       {"{", "is JSON: write its poses as a table"},
       {"<", "is XML or HTML: write its poses as a table"}};
   for (const auto& [begin, kind] : kinds)
@@ -48,7 +51,8 @@ std::string OtherKind(std::string_view line, const std::vector<Word>& words, con
     return "twelve numbers a line are KITTI's poses, which have no times: add them, and quaternions";
   if (words.size() == kMatrix && are_numbers)
     return "sixteen numbers a line are matrices: write a time and a quaternion (timestamp tx ty tz qx qy qz qw)";
-  if (words.size() == kColmap && !IsDigit(words.back().text.back())) return kOfColmap;
+  const std::string_view last = words.back().text;
+  if (words.size() == kColmap && !IsDigit(last.back()) && last.find('.') != std::string_view::npos) return kOfColmap;
   if (const std::string unit = UnitOfStamp(stamp); !unit.empty() && words.size() >= kPose) {
     const bool may_be_csv = line.find(',') != std::string_view::npos;
     return "'" + first + "' is not a time in seconds" + unit +
@@ -97,7 +101,7 @@ std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& probl
     const std::array<std::size_t, kPose>& columns = header_->columns;
     const bool is_run = header_->is_prose && words.size() != header_->count;
     const std::size_t first = is_run ? std::ranges::min(columns) : 0;
-    const std::size_t last = std::max(std::ranges::max(columns), header_->nanoseconds.value_or(0));
+    const std::size_t last = std::max(std::ranges::max(columns), header_->fraction.value_or(0));
     if (words.size() <= last - first) {
       if (is_first_ || words.size() == kPose)  // which would be taken for a pose
         problem = "the header names " + std::to_string(header_->count) + " columns, and this row has " +
@@ -106,7 +110,7 @@ std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& probl
     }
     std::vector<Word> row;
     for (const std::size_t column : columns) row.push_back(words[column - first]);
-    if (header_->nanoseconds) nanoseconds_ = words[*header_->nanoseconds].text;
+    if (header_->fraction) fraction_ = words[*header_->fraction].text;
     return row;
   }
   if (is_euroc_ && words.size() >= kPose) {
@@ -120,8 +124,10 @@ std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& probl
 
 std::string PoseTable::Stamp(const Word& word) const {
   const std::string text(word.text);
-  if (header_ && header_->nanoseconds)
-    return text + "." + std::string(9 - std::min<std::size_t>(9, nanoseconds_.size()), '0') + nanoseconds_;
+  if (header_ && header_->fraction) {
+    const std::size_t digits = header_->fraction_digits;
+    return text + "." + std::string(digits - std::min(digits, fraction_.size()), '0') + fraction_;
+  }
   const int exponent = header_ && header_->exponent != 0 ? header_->exponent : is_euroc_ && ParseWhole(text) ? -9 : 0;
   if (exponent == 0) return text;
   const std::size_t e = std::min(text.find_first_of("eE"), text.size());

@@ -30,7 +30,7 @@ class PoseTable {
   std::vector<Word> InOrder(std::vector<Word> words, std::string& problem);
 
   bool is_euroc_, is_first_ = true, w_is_first_ = false;
-  std::string nanoseconds_;  // of the last row's stamp, where they have a column
+  std::string fraction_;  // of the last row's stamp, where it has a column
   std::optional<PoseHeader> header_;
 };
 

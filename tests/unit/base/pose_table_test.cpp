@@ -66,7 +66,7 @@ TEST(PoseTable, TakesTheOrderOfItsHeader) {
   }
 }
 
-TEST(PoseTable, JoinsSecondsAndNanoseconds) {
+TEST(PoseTable, JoinsSecondsAndTheirParts) {
   for (const std::string header : {"#counter, sec, nsec,x,y,z,qx,qy,qz,qw", "field.seq,secs,nsecs,x,y,z,qx,qy,qz,qw",
                                    "seq,header.stamp.sec,header.stamp.nanosec,tx,ty,tz,qx,qy,qz,qw"}) {
     EXPECT_EQ(LastOf(header + "\n8,1583836591,82590976,1,2,3,4,5,6,9").at(0), "1583836591.082590976") << header;
@@ -78,6 +78,9 @@ TEST(PoseTable, JoinsSecondsAndNanoseconds) {
   EXPECT_THAT(LastOf("x,y,z,qx,qy,qz,qw,sec,nsec\n1,2,3,4,5,6,9,7,5\n1,2,3,4,5,6,9,8"),
               ElementsAre(HasSubstr("names 9 columns, and this row has 8")));
   EXPECT_EQ(LastOf("# counter sec nsec x y z qx qy qz qw\n8 7 40 1 2 3 4 5 6 9").at(0), "7.000000040");
+  EXPECT_EQ(LastOf("sec,usec,x,y,z,qx,qy,qz,qw\n7,40,1,2,3,4,5,6,9").at(0), "7.000040");
+  EXPECT_EQ(LastOf("x,y,z,qx,qy,qz,qw,stamp_secs,stamp_msecs\n1,2,3,4,5,6,9,7,40").at(0), "7.040");
+  EXPECT_EQ(LastOf("time_usec,x,y,z,qx,qy,qz,qw\n40,1,2,3,4,5,6,9").at(0), "40e-6") << "no seconds beside them";
 }
 
 // Integer stamps of EuRoC's, VINS' and ROS' tables are nanoseconds; ROS: the header's stamp, not the time of arrival.
@@ -138,6 +141,10 @@ TEST(PoseTable, RefusesOtherKindsByTheFirstRow) {
            {"1403636579763555584,1,2,3", "4 columns where 8 are expected"},
            {"1.5,1,2,3,0,0,0,1,0,0,0,0,0,0,0,0,0", "17 columns"},
            {"1.5 1 2 3 0 0 0 1 0 0 0 a", "12 columns"},
+           {"1 0.1 0.2 0.3 0.4 1 2 3 1 rgb/a.png", "COLMAP"},
+           {"Format Version,1.23,Take Name,Take 2024,Rotation Type,Quaternion,Length Units,Millimeters,Rate,120,x",
+            "Motive"},
+           {"Format Version,Take Name,Take,Notes,Rotation Type,Quaternion,Length Units,Millimeters", "Motive"},
            {"{", "is JSON"},
            {"#ROSBAG V2.0", "is a ROS bag"},
            {"# timestamp [s] position x y z [m] quaternion w x y z\n1 1 2 3 1 0 0 0", "no column for qx, qy, qz"},
