@@ -20,15 +20,16 @@ constexpr char kRoom[] =
     "usemtl green\nf 4 3 2 1\nusemtl blue\nf 5 6 7 8\nusemtl red\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 constexpr char kColours[] = "newmtl red\nKd 0.8 0.1 0.1\nnewmtl green\nKd 0.1 0.8 0.1\nnewmtl blue\nKd 0.1 0.1 0.8\n";
 
-cv::Mat Sheet(const Folder& folder, const std::string& trajectory) {
+cv::Mat Sheet(const Folder& folder, const std::string& trajectory,
+              const std::string& lights = "{type: ambient, radiance: [1, 1, 1]}") {
   folder.Write("room.obj", kRoom);
   folder.Write("room.mtl", kColours);
   const fs::path scenario =
-      folder.Write("room.yaml",
-                   "world: {meshes: [{file: room.obj}], lights: [{type: ambient, radiance: [1, 1, 1]}]}\n"
-                   "camera: {width: 64, height: 48, fx: 60, fy: 60, cx: 31.5, cy: 23.5}\n"
-                   "time: {rate: 10 Hz, duration: 2 s}\ntrajectory: " +
-                       trajectory + "\n");
+      folder.Write("room.yaml", "world: {meshes: [{file: room.obj}], lights: [" + lights +
+                                    "]}\n"
+                                    "camera: {width: 64, height: 48, fx: 60, fy: 60, cx: 31.5, cy: 23.5}\n"
+                                    "time: {rate: 10 Hz, duration: 2 s}\ntrajectory: " +
+                                    trajectory + "\n");
   Look({.scenario = scenario, .output = folder / "sheet.png", .overrides = {}});
   return cv::imread((folder / "sheet.png").string());
 }
@@ -70,6 +71,17 @@ TEST(LookTest, APathThroughAWallIsSaidAndTheWorldIsShownAllTheSame) {
       Sheet(folder, "{type: dolly, start: {position: [0, 1, 0], look_at: [0, 1, -1]}, move: [0, 0, -5], period: 4 s}");
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("trajectory: "));
   EXPECT_GT(sheet.rows, 390);
+}
+
+TEST(LookTest, AWorldWithoutLightIsLitWithAWarning) {
+  const Folder folder;
+  testing::internal::CaptureStderr();
+  const cv::Mat sheet = Sheet(folder,
+                              "{type: scripted, keys: [{time: 0 s, position: [0, 1, 1], look_at: [0, 1, -2]},"
+                              " {time: 2 s, position: [0, 1, 0], look_at: [0, 0, -0.3]}]}",
+                              "");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::HasSubstr("no light reaches the first view"));
+  EXPECT_GT(Colours(sheet, 0, 0)[0], 0.5) << "the wall ahead";
 }
 
 TEST(LookTest, AWorldOfPointsHasNoPictures) {

@@ -160,7 +160,9 @@ void Look(const LookOptions& options) {
   const auto is_ambient = [](const sim::Light& light) { return std::holds_alternative<sim::AmbientLight>(light); };
   if (std::ranges::none_of(scene.lights, is_ambient)) {  // in place of baked light: shadows would be black
     const double mean = MeanLuminance(Radiance(*whole, views.front().pose));
-    scene.lights.push_back(sim::AmbientLight{glm::dvec3(0.5 * mean)});
+    if (mean == 0)
+      PrintWarnings({"no light reaches the first view: ambient light of 1 is added here, but not in the scenario"});
+    scene.lights.push_back(sim::AmbientLight{glm::dvec3(mean > 0 ? 0.5 * mean : 1.0)});
     whole = sim::MakeRayTracer(scene);
   }
   for (int i = 0; const auto& [pose, label, cut] : views) {
