@@ -136,7 +136,18 @@ TEST_F(BenchTest, MistakesAreSaidBeforeAnythingRuns) {
   const Outcome missing = RunVobench(words, here_.path());
   EXPECT_EQ(missing.status, 2);
   EXPECT_THAT(missing.err, HasSubstr("missing.yaml"));
-  EXPECT_FALSE(fs::exists(here_ / "out/round_01"));
+  WriteFile(here_ / "typo.yaml",
+            "broken: {error_share_of_spread: 1e6, pose_coverage: 0.5}\nquick: {seeds: 2, steps: 8, accuracy_seeds: 2}\n"
+            "base: {scenario: " +
+                TinyScenario().string() +
+                "}\nstresses:\n"
+                "  - {name: noise, unit: e, mild: 1, severe: 9, limit: none, set: {sensor.read_noisy: $x e}}\n");
+  words[5] = "typo.yaml";
+  for (const std::string system : {"rb2pf", "false {sequence}"}) {
+    words[1] = system;
+    EXPECT_THAT(RunVobench(words, here_.path()).err, HasSubstr("did you mean 'read_noise'"));
+    EXPECT_FALSE(fs::exists(here_ / "out")) << system;
+  }
 }
 
 }  // namespace

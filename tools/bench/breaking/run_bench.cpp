@@ -189,9 +189,19 @@ class Run {
 void Bench(const BenchOptions& options) {
   const breaking::BenchFile bench =
       Input([&] { return breaking::ReadBenchFile(options.file, options.full ? "full" : "quick"); });
-  if (options.attack) return breaking::RunAttack(options, bench);
-  if (bench.stresses.empty() && bench.accuracy.empty()) throw BadInput(options.file.string() + ": has nothing to run");
-  breaking::Run(options, bench).All();
+  if (!options.attack && bench.stresses.empty() && bench.accuracy.empty())
+    throw BadInput(options.file.string() + ": has nothing to run");
+  const bool is_new = !fs::exists(options.output);
+  try {
+    if (options.attack) return breaking::RunAttack(options, bench);
+    breaking::Run(options, bench).All();
+  } catch (const BadInput&) {
+    const auto is_folder = [](const fs::directory_entry& entry) { return entry.is_directory(); };
+    const bool is_made = is_new && fs::exists(options.output);
+    if (is_made && std::none_of(fs::directory_iterator(options.output), {}, is_folder))  // nothing was run
+      fs::remove_all(options.output);
+    throw;
+  }
 }
 
 }  // namespace vobench
