@@ -182,7 +182,7 @@ class Converter {
     for (unsigned i = 0; i < from_.mNumMeshes; ++i) AppendMesh(i);
     if (from_.mRootNode == nullptr) return;
     AppendNode(*from_.mRootNode, -1);
-    if (extension_ == ".3mf" || extension_ == ".amf")
+    if (extension_ == ".amf")
       import_.warnings.push_back("its unit is not read: a number is a metre (scale: 0.001 makes it a millimetre)");
     if (extension_ == ".fbx") {
       glm::mat4& root = to_.nodes[0].transform;
@@ -282,7 +282,7 @@ class Converter {
       color = {diffuse.r, diffuse.g, diffuse.b, 1};
     }
     const bool is_default = color.r == 0.6f && color.g == 0.6f && color.b == 0.6f;  // assimp's, of STL
-    if (extension_ == ".3mf" || (extension_ == ".stl" && !is_default))
+    if (extension_ == ".stl" && !is_default)
       for (unsigned i = 0; i < 3; ++i) color[i] = static_cast<float>(SrgbToLinear(color[i]));
     out.base_color = {color.r, color.g, color.b, color.a};
     aiColor3D emission(0, 0, 0);

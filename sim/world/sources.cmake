@@ -23,5 +23,6 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/texture.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture_cache.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture_file.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/three_mf_reader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/uv_wrap.cpp
   ${CMAKE_CURRENT_LIST_DIR}/xml_text.cpp)

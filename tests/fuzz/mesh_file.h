@@ -14,6 +14,7 @@ namespace fuzz {
 inline std::string MeshExtension(std::string_view text) {
   if (text.starts_with("glTF")) return "glb";
   if (text.starts_with("ply")) return "ply";
+  if (text.starts_with("PK")) return "3mf";
   if (text.substr(0, 6).find("OFF") != std::string_view::npos) return "off";
   if (text.starts_with("solid") || (text.size() > 84 && text[0] == '\0')) return "stl";
   if (text.starts_with("Kaydara") || text.starts_with("; FBX")) return "fbx";

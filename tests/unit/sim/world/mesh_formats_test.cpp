@@ -714,6 +714,95 @@ TEST(MeshFormats, Off) {
   EXPECT_THAT(problem("OFF\n4 1 0\n" + square + "3 0 1\n"), HasSubstr("line 7: a face lacks vertices"));
 }
 
+// A zip archive of files that are stored, or deflated without compression.
+std::string ZipOf(const std::vector<std::pair<std::string, std::string>>& files, bool is_deflated) {
+  std::string archive, directory;
+  for (const auto& [name, content] : files) {
+    std::string data;
+    if (is_deflated) {
+      data = '\1';
+      const auto size = static_cast<std::uint16_t>(content.size());
+      Append<std::uint16_t>(data, {size, static_cast<std::uint16_t>(~size)});
+    }
+    data += content;
+    std::string common;
+    Append<std::uint16_t>(common, {20, 0, static_cast<std::uint16_t>(is_deflated ? 8 : 0), 0, 0, 0, 0});
+    Append<std::uint32_t>(common,
+                          {static_cast<std::uint32_t>(data.size()), static_cast<std::uint32_t>(content.size())});
+    Append<std::uint16_t>(common, {static_cast<std::uint16_t>(name.size()), 0});
+    directory += "PK\1\2" + std::string("\x14\0", 2) + common + std::string(10, '\0');
+    Append<std::uint32_t>(directory, {static_cast<std::uint32_t>(archive.size())});
+    directory += name;
+    archive += "PK\3\4" + common + name + data;
+  }
+  const auto count = static_cast<std::uint16_t>(files.size());
+  std::string end = "PK\5\6";
+  Append<std::uint16_t>(end, {0, 0, count, count});
+  Append<std::uint32_t>(end,
+                        {static_cast<std::uint32_t>(directory.size()), static_cast<std::uint32_t>(archive.size())});
+  return archive + directory + end + std::string(2, '\0');
+}
+
+// Three triangles at heights of 0, 1 and 2 m: a base material, two colours, a picture; placed 3 m to the side by a
+// component of another model part.
+TEST(MeshFormats, ThreeMf) {
+  const auto triangle = [](int i, const std::string& properties) {
+    const std::string at = std::to_string(3 * i);
+    return "<triangle v1='" + at + "' v2='" + std::to_string(3 * i + 1) + "' v3='" + std::to_string(3 * i + 2) + "' " +
+           properties + "/>";
+  };
+  std::string vertices;
+  for (const std::string z : {"0", "1000", "2000"})
+    for (const std::string xy : {"x='0' y='0'", "x='1000' y='0'", "x='0' y='1000'"})
+      vertices += "<vertex " + xy + " z='" + z + "'/>";
+  const std::string part =
+      "<model xmlns:m='x'><resources><basematerials id='1'><base name='red' displaycolor='#FF0000'/>"
+      "<base name='grey' displaycolor='#808080FF'/></basematerials><m:colorgroup id='2'><m:color color='#0000FF'/>"
+      "<m:color color='#00FF00'/></m:colorgroup><m:texture2d id='3' path='/3D/Textures/p.png' contenttype='image/png' "
+      "tilestyleu='clamp'/><m:texture2dgroup id='4' texid='3'><m:tex2coord u='0' v='0'/><m:tex2coord u='1' v='0'/>"
+      "<m:tex2coord u='0' v='1'/></m:texture2dgroup><!-- <object id='7'> --><object id='7' pid='1' pindex='1'><mesh>"
+      "<vertices>" +
+      vertices + "</vertices><triangles>" + triangle(0, "") + triangle(1, "pid='2' p1='0' p2='0' p3='1'") +
+      triangle(2, "pid='4' p1='0' p2='1' p3='2'") + "</triangles></mesh></object></resources></model>";
+  const std::string root =
+      "<model unit='millimeter' xmlns:p='y'><resources><object id='1'><components><component objectid='7' "
+      "p:path='/3D/part.model' transform='1 0 0 0 1 0 0 0 1 3000 0 0'/></components></object></resources><build>"
+      "<item objectid='1'/></build></model>";
+  const Folder folder;
+  for (const bool is_deflated : {false, true}) {
+    const auto file = [&](const std::string& of_root) {
+      return ZipOf(
+          {{"3D/3dmodel.model", of_root}, {"3D/part.model", part}, {"3D/Textures/p.png", EncodeNoise(".png", 8, 4)}},
+          is_deflated);
+    };
+    const Scene scene = LoadScene(WorldOf(folder.Write("m.3mf", file(root))));
+    EXPECT_THAT(scene.warnings, IsEmpty());
+    ASSERT_THAT(scene.meshes, SizeIs(3));
+    for (const Mesh& mesh : scene.meshes) {
+      const Material& material = scene.materials.at(static_cast<std::size_t>(mesh.material));
+      const float z = mesh.positions.at(0).z;
+      EXPECT_THAT(mesh.positions, testing::Contains(glm::vec3(4, 0, z)));
+      if (z == 0) {
+        EXPECT_EQ(material.name, "grey");
+        EXPECT_NEAR(material.base_color.x, 0.2159f, 1e-4f) << "linear";
+      } else if (z == 1) {
+        EXPECT_THAT(mesh.colors,
+                    testing::UnorderedElementsAre(glm::vec3(0, 0, 1), glm::vec3(0, 0, 1), glm::vec3(0, 1, 0)));
+      } else {
+        EXPECT_GE(material.texture, 0);
+        EXPECT_THAT(mesh.uvs, testing::Contains(glm::vec2(0.0625f, 1))) << "v down; half a texel inside along u";
+      }
+    }
+    const std::string whole = file(root);
+    const auto problem = [&](const std::string& bytes) {
+      return ProblemTextOf([&] { LoadScene(WorldOf(folder.Write("bad.3mf", bytes))); });
+    };
+    EXPECT_THAT(problem(whole.substr(0, whole.size() / 2)), HasSubstr("no zip archive"));
+    EXPECT_THAT(problem(file("<model><object id='1'><component objectid='1'/></object><item objectid='1'/></model>")),
+                HasSubstr("too many or deep"));
+  }
+}
+
 // Truncation: a file is refused or gives a smaller world (a PLY or OBJ without its end may be valid).
 TEST(MeshFormats, TruncatedFilesEndWell) {
   const Folder folder;
