@@ -24,8 +24,8 @@ void ReadPly(MeshFiles& files, MeshImport& import);
 // Source: Geomview manual, "OFF: Object File Format".
 void ReadOff(MeshFiles& files, MeshImport& import);
 
-// 3MF in its unit: objects, components, build items, also of several model parts; base materials, colours and pictures of
-// triangles and their corners.
+// 3MF in its unit: objects, components, build items, also of several model parts; base materials, colours and pictures
+// of triangles and their corners.
 // Source: 3MF Consortium, Core 1.3, Materials and Properties 1.2.1, Production 1.1.2; PKWARE, APPNOTE 6.3.9 (zip).
 void Read3mf(MeshFiles& files, MeshImport& import);
 

@@ -81,8 +81,8 @@ std::map<std::string, std::string_view> MorphsOf(std::string_view text, bool& an
   return bases;
 }
 
-// Parameters of an effect, which assimp reads within a profile alone: what each names (a parameter or an image), and the
-// wrapping of samplers.
+// Parameters of an effect, which assimp reads within a profile alone: what each names (a parameter or an image), and
+// the wrapping of samplers.
 struct Parameters {
   std::map<std::string, std::string_view, std::less<>> names;
   std::map<std::string, std::array<std::string_view, 2>, std::less<>> wrap;

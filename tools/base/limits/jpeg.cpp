@@ -13,8 +13,8 @@ constexpr const char* kTruncated = "truncated JPEG: the end marker is missing";
 
 bool IsRestart(std::uint8_t marker) { return marker >= 0xd0 && marker <= 0xd7; }
 
-// Huffman code: by the next 16 bits, 256 times its length and the symbol; 0: there is none. Codes of up to 9 bits are in
-// a small table, too.
+// Huffman code: by the next 16 bits, 256 times its length and the symbol; 0: there is none. Codes of up to 9 bits are
+// in a small table, too.
 struct Code {
   std::vector<std::uint16_t> of;
   std::array<std::uint16_t, 1 << 9> short_codes{};
