@@ -76,7 +76,9 @@ std::vector<LabelledView> Inside(const sim::Surroundings& around) {
   std::ranges::sort(found, [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<LabelledView> views;
   for (const auto& [worth, view] : found) {
-    const auto near = [&](const LabelledView& of) { return glm::distance(of.pose.p_WC, view.p_WC) < 0.2 * extent; };
+    const auto near = [&, at = view.p_WC](const LabelledView& of) {
+      return glm::distance(of.pose.p_WC, at) < 0.2 * extent;
+    };
     if (views.size() < kViews && worth > 0 && std::ranges::none_of(views, near))
       views.push_back({view, "from " + sim::FormatPlace(view.p_WC)});
   }

@@ -68,7 +68,8 @@ TEST(ImageFile, GreyThatIsTransparent) {
     std::vector<std::uint8_t> bytes;
     cv::imencode(".png", picture, bytes);
     const std::string chunk = PngChunk("tRNS", {"\0\7", 2});
-    const auto at = std::ranges::search(bytes, std::string("IDAT")).begin() - 4;
+    const std::string name = "IDAT";
+    const auto at = std::search(bytes.begin(), bytes.end(), name.begin(), name.end()) - 4;
     bytes.insert(at, chunk.begin(), chunk.end());
     EXPECT_THAT(DecodeImage(bytes, true).alpha, testing::ElementsAre(255, 0, 255)) << type;
     EXPECT_THAT(DecodeImage(bytes).alpha, testing::IsEmpty());
