@@ -367,11 +367,14 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
     const std::string reason = importer.GetErrorString();
     const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's message
     const bool too_much = reason.find("bad_alloc") != std::string::npos;              // the library's
+    const bool nothing = reason.find("mNumMeshes is 0") != std::string::npos;         // its validation's
     const bool unknown = reason.find("No suitable reader") != std::string::npos;
     import.problem = only_lines ? "has no triangles: points and lines are not rendered"
                      : unknown  ? "is of a kind that is not read: export it as .glb, .obj or .ply"
+                     : nothing  ? "holds no mesh that the importer (assimp) knows: export it as .glb, .obj or .ply"
                      : too_much ? "cannot be read: the importer (assimp) needs more memory than a file of this size may"
-                                : "cannot be read: " + reason;
+                                : "cannot be read by the importer (assimp): " + reason +
+                                      " (.glb, .obj and .ply have readers of their own)";
   }
   if (!import.problem.empty()) return;
   Converter(*scene, extension, import).Convert();

@@ -216,25 +216,32 @@ std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& wa
 std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnings) {
   std::string out;
   std::size_t done = 0;
-  bool has_face_colors = false, has_copies = false, has_files = false;
+  bool has_face_colors = false, has_copies = false, has_files = false, has_textures = false;
   ForEachTag(text, [&](std::string_view tag) {
     has_face_colors = has_face_colors || Attribute(tag, "colorPerVertex") == "false";
     has_files = has_files || IsTag(tag, "<Inline");
     for (const std::string_view node : {"<Shape", "<Transform", "<Group", "<Switch"})
       has_copies = has_copies || (IsTag(tag, node) && !Attribute(tag, "USE").empty());
-    const std::string_view urls = IsTag(tag, "<ImageTexture") ? Attribute(tag, "url") : "";
-    std::string url(urls);
-    for (std::size_t at = url.find("&quot;"); at != std::string::npos; at = url.find("&quot;"))
-      url.replace(at, 6, "\"");
-    const std::size_t begin = url.find('"') + 1;
-    if (begin == 0) return;
-    out.append(text.substr(done, static_cast<std::size_t>(urls.data() - text.data()) - done));
-    out.append(url.substr(begin, url.find('"', begin) - begin));
-    done = static_cast<std::size_t>(urls.data() - text.data()) + urls.size();
+    for (const std::string_view node : {"<PixelTexture", "<MovieTexture", "<MultiTexture"})
+      has_textures = has_textures || IsTag(tag, node) || tag == node;
+    for (const char* attribute : {"url", "value", "info"}) {
+      const std::string_view texts = Attribute(tag, attribute);
+      std::string first(texts);
+      for (std::size_t at = first.find("&quot;"); at != std::string::npos; at = first.find("&quot;"))
+        first.replace(at, 6, "\"");
+      const std::size_t begin = first.find('"') + 1;
+      if (begin == 0) continue;
+      const auto at = static_cast<std::size_t>(texts.data() - text.data());
+      if (at < done) continue;
+      out.append(text.substr(done, at - done));
+      out.append(first.substr(begin, first.find('"', begin) - begin));
+      done = at + texts.size();
+    }
   });
   if (has_face_colors)
     warnings.push_back("colours of faces (colorPerVertex false) run into each other at their corners");
   if (has_copies) warnings.push_back("nodes that stand in several places (USE) are drawn in the first alone");
+  if (has_textures) warnings.push_back("textures of other kinds than ImageTexture are left out");
   if (has_files) warnings.push_back("files that it includes (Inline) are not read");
   return out + std::string(text.substr(done));
 }

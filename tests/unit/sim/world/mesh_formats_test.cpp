@@ -684,6 +684,22 @@ TEST(MeshFormats, X3dWarnings) {
   EXPECT_THAT(warnings("<IndexedFaceSet colorPerVertex='false'/>"), ElementsAre(HasSubstr("colours of faces")));
   EXPECT_THAT(warnings("<Shape DEF='a'/><Shape USE='a'/>"), ElementsAre(HasSubstr("several places (USE)")));
   EXPECT_THAT(warnings("<Inline url='b.x3d'/>"), ElementsAre(HasSubstr("(Inline) are not read")));
+  EXPECT_THAT(warnings("<MultiTexture><PixelTexture image='0 0 0'/>"), ElementsAre(HasSubstr("than ImageTexture")));
+  std::vector<std::string> none;
+  EXPECT_EQ(X3dForAssimp("<MetadataString value='\"a\" \"b\"' name='n'/>", none),
+            "<MetadataString value='a' name='n'/>");
+}
+
+TEST(MeshFormats, FilesOfNoMeshAndUnknownContentAreRefusedWithARemedy) {
+  const Folder folder;
+  const auto problem = [&](const std::string& scene) {
+    const std::string text =
+        "<?xml version='1.0'?><X3D profile='Immersive' version='3.0'><Scene>" + scene + "</Scene></X3D>";
+    return ProblemTextOf([&] { LoadScene(WorldOf(folder.Write("m.x3d", text))); });
+  };
+  EXPECT_THAT(problem("<Shape><Text string='a'/></Shape>"),
+              HasSubstr("no mesh that the importer (assimp) knows: export"));
+  EXPECT_THAT(problem("<Foo/>"), testing::AllOf(HasSubstr("\"Foo\""), HasSubstr(".ply have readers of their own")));
 }
 
 // OFF: colours of vertices and of faces, which stay on their face, and the forms of the header.
