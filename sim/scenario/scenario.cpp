@@ -10,6 +10,7 @@
 #include "sim/light/cache.h"
 #include "sim/random/random.h"
 #include "sim/scenario/readers.h"
+#include "sim/sensor/develop.h"
 #include "sim/sensor/sensor.h"
 #include "tools/base/settings/field_reader.h"
 
@@ -73,7 +74,7 @@ constexpr std::array<std::pair<const char*, const char*>, 6> kPresets = {
          optics: {psf_sigma: 0.7 px}})"}}};
 
 // rate_hz: of the frames, within which an exposure and the shutter must end.
-void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
+void ReadSensor(Section section, const std::filesystem::path& folder, double rate_hz, SensorParams& sensor) {
   section.Allow("preset");
   if (section.Has("preset")) {  // resolved only where given
     settings::Choices<std::size_t> names;
@@ -91,6 +92,13 @@ void ReadSensor(Section section, double rate_hz, SensorParams& sensor) {
     }
   }
   ReadFields(section, sensor);
+  section.Allow("response_file");
+  if (section.Has("response_file")) try {  // resolved only where given
+      sensor.response_file = ReadFile(section, "response_file", folder);
+      sensor.light_of_code = ReadResponse(sensor.response_file);
+    } catch (const std::runtime_error& error) {
+      section.Reject("response_file", error.what());
+    }
   section.Reject(Problems(sensor));
   settings::FieldCheck check;
   const auto within_frame = [&](const char* key, double value_s) {
@@ -121,7 +129,7 @@ void ReadCamera(Section section, FileCameras& cameras, CameraParams& camera) {
 }
 
 // Settings common to all cameras are read before.
-void ReadRig(Section root, FileCameras& cameras, Scenario& scenario) {
+void ReadRig(Section root, const std::filesystem::path& folder, FileCameras& cameras, Scenario& scenario) {
   for (Section& item : root.List("cameras")) {
     RigCamera camera{"cam" + std::to_string(scenario.cameras.size()), {}, scenario.sensor, {}, 0};
     item.Read("name", camera.name);
@@ -133,7 +141,7 @@ void ReadRig(Section root, FileCameras& cameras, Scenario& scenario) {
     ReadCamera(item, cameras, camera.camera);
     ReadFields(item, camera);
     item.Allow("sensor");
-    if (item.Has("sensor")) ReadSensor(item.Child("sensor"), scenario.time.rate_hz, camera.sensor);
+    if (item.Has("sensor")) ReadSensor(item.Child("sensor"), folder, scenario.time.rate_hz, camera.sensor);
     settings::FieldCheck check;
     check.Require(camera.trigger_offset_s * scenario.time.rate_hz < 1, "trigger_offset", camera.trigger_offset_s,
                   "s is not shorter than the time between two frames");
@@ -249,8 +257,8 @@ Scenario LoadScenario(const std::filesystem::path& path,
     scenario.points = ReadPoints(root, world, scenario.camera);
   } else {
     CheckScripts(world, scenario);
-    ReadSensor(root.Child("sensor"), scenario.time.rate_hz, scenario.sensor);
-    if (rig) ReadRig(root, cameras, scenario);
+    ReadSensor(root.Child("sensor"), folder, scenario.time.rate_hz, scenario.sensor);
+    if (rig) ReadRig(root, folder, cameras, scenario);
     ReadRender(root.Child("render"), folder, scenario.render);
     ReadFields(root, scenario.truth);
     const std::string problem = RectifiedProblem(scenario.cameras);

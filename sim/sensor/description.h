@@ -1,6 +1,7 @@
 // Parameters of optics and sensor, in the order of the signal path.
 #pragma once
 
+#include <filesystem>
 #include <glm/vec3.hpp>
 #include <vector>
 
@@ -118,6 +119,8 @@ struct SensorParams {
   double gain = 1.0;
   double black_level = 0.0;
   Response response = Response::srgb;
+  std::filesystem::path response_file;  // of what follows
+  std::vector<double> light_of_code;    // inverse response, in place of `response`: at equally spaced codes, 0 ... 1
   int bit_depth = 8;
   bool color = true;
   Mosaic mosaic = Mosaic::none;

@@ -2,9 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "tools/base/text.h"
 
 namespace sim {
 namespace {
@@ -30,21 +36,67 @@ Image ToImage(const cv::Mat& mat, int bits) {
 
 }  // namespace
 
-double EncodeResponse(Response response, double x) {
-  if (response == Response::linear) return x;
-  // Where the two pieces of Decode meet: the standard's own threshold, 0.0031308, is rounded.
+double EncodeResponse(const SensorParams& params, double x) {
+  const std::vector<double>& light = params.light_of_code;
+  if (!light.empty()) {
+    const auto above = std::ranges::upper_bound(light, x);
+    if (above == light.begin() || above == light.end()) return above == light.end() ? 1 : 0;
+    const double below = *(above - 1), code = static_cast<double>(above - 1 - light.begin());
+    return (code + (x - below) / (*above - below)) / static_cast<double>(light.size() - 1);
+  }
+  if (params.response == Response::linear) return x;
+  // Where the two pieces of the inverse meet: the standard's own threshold, 0.0031308, is rounded.
   return x <= 0.04045 / 12.92 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
-double ResponseCurve::Decode(Response response, double code) {
-  if (response == Response::linear) return code;
+double DecodeResponse(const SensorParams& params, double code) {
+  const std::vector<double>& light = params.light_of_code;
+  if (!light.empty()) {
+    const double at = code * static_cast<double>(light.size() - 1);
+    const auto i = std::min(static_cast<std::size_t>(at), light.size() - 2);
+    return light[i] + (at - static_cast<double>(i)) * (light[i + 1] - light[i]);
+  }
+  if (params.response == Response::linear) return code;
   return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
 }
 
-ResponseCurve::ResponseCurve(Response response) {
-  for (std::size_t i = 0; i < threshold_.size(); ++i) {
-    threshold_[i] = static_cast<float>(Decode(response, (static_cast<double>(i) + 0.5) / 255));
+std::vector<double> ReadResponse(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error(file.string() + ": cannot be read");
+  std::vector<double> light;
+  std::vector<std::string> problems;
+  const auto add = [&](const std::string& place, const std::string& problem) {
+    problems.push_back(file.string() + place + ": " + problem);
+  };
+  int number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    for (const base::Word& word : base::SplitWords(number == 1 ? base::WithoutMark(line) : line)) {
+      if (base::IsComment(word.text)) break;
+      const std::optional<double> value = base::ParseNumber(base::WithoutPlus(word.text));
+      const std::string place = ":" + std::to_string(number) + ":" + std::to_string(word.column);
+      if (!value || !std::isfinite(*value) || *value < 0) {
+        add(place, "'" + std::string(word.text) + "' is not an amount of light");
+      } else if (!light.empty() && *value < light.back()) {
+        add(place, std::string(word.text) + " is less than the light of the code below it");
+      } else {
+        light.push_back(*value);
+      }
+    }
   }
+  if (problems.empty() && (light.size() < 2 || light.front() >= light.back()))
+    add("", "holds no increasing light of codes");
+  if (!problems.empty()) throw std::runtime_error(base::JoinProblems(std::move(problems)));
+  const double most = light.back();
+  for (double& value : light) value /= most;
+  return light;
+}
+
+ResponseCurve::ResponseCurve(Response response) {
+  SensorParams params;
+  params.response = response;
+  for (std::size_t i = 0; i < threshold_.size(); ++i)
+    threshold_[i] = static_cast<float>(DecodeResponse(params, (static_cast<double>(i) + 0.5) / 255));
   for (std::size_t i = 0; i < guess_.size(); ++i) {
     const float x = static_cast<float>(i) / kCells;
     guess_[i] =

@@ -4,14 +4,22 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <vector>
 
 #include "sim/sensor/description.h"
 #include "sim/sensor/image.h"
 
 namespace sim {
 
-// R(x) for x in [0, 1]: x itself, or the sRGB curve.
-double EncodeResponse(Response response, double x);
+// Camera response R(x), light x and code in [0, 1], and its inverse: x itself, the sRGB curve, or that of light_of_code,
+// linear in between.
+double EncodeResponse(const SensorParams& params, double x);
+double DecodeResponse(const SensorParams& params, double code);
+
+// The inverse response of a file in TUM's format, pcalib.txt: the light of each code, in any unit, never decreasing.
+// Throws std::runtime_error that names the file, with all problems.
+std::vector<double> ReadResponse(const std::filesystem::path& file);
 
 // code = round(255 R(x)), R(x) = x or the sRGB curve; exact at every threshold R^-1((code + 1/2) / 255) as rounded to
 // float.
@@ -25,9 +33,6 @@ class ResponseCurve {
     const std::uint8_t code = guess_[static_cast<std::size_t>(light * kCells)];
     return static_cast<std::uint8_t>(code + (light >= threshold_[code] ? 1 : 0));
   }
-
-  // The fraction that a code stands for.
-  static double Decode(Response response, double code_0_to_1);
 
  private:
   static constexpr int kCells = 4096;             // narrower than the range of any code

@@ -52,7 +52,7 @@ double AutoExposure::Brightness(const RadianceImage& frame, double signal) const
   const double scale = signal / (sensor_.white * sensor_.exposure_s);
   const bool processed = sensor_.processing.on();
   const auto encoded = [&](double x) {
-    return processed ? double{tone_(static_cast<float>(x))} : EncodeResponse(sensor_.response, x);
+    return processed ? double{tone_(static_cast<float>(x))} : EncodeResponse(sensor_, x);
   };
   const auto shown = [&](float light) { return encoded(std::min(1.0, dark + scale * light)); };
   double sum = 0;

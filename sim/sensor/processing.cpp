@@ -46,7 +46,7 @@ void CorrectColor(const ProcessingParams& p, std::span<float> rgb) {
 ToneCurve::ToneCurve(const SensorParams& params) {
   const ProcessingParams& p = params.processing;
   const auto code = [&](double x) {
-    const double e = std::clamp(p.contrast * (EncodeResponse(params.response, x) - p.black_clip), 0.0, 1.0);
+    const double e = std::clamp(p.contrast * (EncodeResponse(params, x) - p.black_clip), 0.0, 1.0);
     const double low = std::pow(e, p.toe);
     return low / (low + std::pow(1 - e, p.shoulder));
   };

@@ -52,7 +52,7 @@ std::vector<settings::FieldProblem> Problems(SensorParams p) {
   if (!p.color && p.mosaic != Mosaic::none) check.Refuse("color", "= false does not go with a mosaic");
   if (p.auto_exposure.on) {
     check.Require(p.exposure_s > 0, "exposure", p.exposure_s, "must be positive for auto_exposure to start from");
-    check.Require(p.auto_exposure.target > EncodeResponse(p.response, p.black_level), "auto_exposure.target",
+    check.Require(p.auto_exposure.target > EncodeResponse(p, p.black_level), "auto_exposure.target",
                   p.auto_exposure.target, "must be above what black_level shows without any light");
   }
   check.Require(p.auto_exposure.longest_s >= p.auto_exposure.shortest_s, "auto_exposure.longest",
@@ -204,15 +204,19 @@ Image Sensor::Capture(const RadianceImage& radiance, std::int64_t frame,
       for (std::size_t i = 0; i < row_size; ++i) electrons[i] = black + electrons[i] / full_scale;
       if (processed) {
         std::ranges::copy(electrons, signal.begin() + static_cast<std::ptrdiff_t>(y * row_size));
-      } else if (image.bits == 8) {
+      } else if (image.bits == 8 && params_.light_of_code.empty()) {
         const ResponseCurve& response = response_;  // read again after every byte written otherwise
         std::transform(electrons.begin(), electrons.end(), &image.data[y * row_size],
                        [&response](float x) { return response.Encode(x); });
       } else {
         for (std::size_t i = 0; i < row_size; ++i) {
           const double x = std::clamp(double{electrons[i]}, 0.0, 1.0);
-          image.wide[y * row_size + i] =
-              static_cast<std::uint16_t>(std::lround(highest * EncodeResponse(params_.response, x)));
+          const auto code = static_cast<std::uint16_t>(std::lround(highest * EncodeResponse(params_, x)));
+          if (image.bits == 8) {
+            image.data[y * row_size + i] = static_cast<std::uint8_t>(code);
+          } else {
+            image.wide[y * row_size + i] = code;
+          }
         }
       }
     }

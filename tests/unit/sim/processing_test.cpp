@@ -77,7 +77,7 @@ TEST(ToneCurve, ByHand) {
   p.processing = {};
   p.response = Response::srgb;
   for (const float x : {0.0f, 0.003f, 0.2f, 0.7f, 1.0f})
-    EXPECT_NEAR(ToneCurve(p)(x), EncodeResponse(Response::srgb, double{x}), 2e-5);
+    EXPECT_NEAR(ToneCurve(p)(x), EncodeResponse(p, double{x}), 2e-5);
 }
 
 TEST(Denoise, WeighsByDistanceAndDifference) {

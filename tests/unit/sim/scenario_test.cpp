@@ -175,6 +175,16 @@ TEST(Scenario, APresetIsWhatTheOtherKeysBeginWith) {
   EXPECT_THAT(Message(world.scenario(), {{"sensor", "{preset: leica}"}}), HasSubstr("leica"));
 }
 
+TEST(Scenario, TheResponseIsThatOfAFileBesideIt) {
+  const SmallWorld world;
+  const auto file = world.folder.Write("pcalib.txt", "0 10 40\n");
+  EXPECT_EQ(LoadScenario(world.scenario(), {{"sensor.response_file", "pcalib.txt"}}).sensor.light_of_code,
+            (std::vector<double>{0, 0.25, 1}));
+  world.folder.Write("pcalib.txt", "0 10 4\n");
+  EXPECT_THAT(Message(world.scenario(), {{"sensor.response_file", "pcalib.txt"}, {"sensor.white", "-1"}}),
+              testing::AllOf(HasSubstr(file.string() + ":1:6: 4 is less"), HasSubstr("sensor.white")));
+}
+
 TEST(Scenario, LightThatMakesNoSense) {
   const TemporaryFolder folder;
   const std::string message = Message(

@@ -4,11 +4,15 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <glm/vec3.hpp>
 #include <stdexcept>
+#include <string>
 
+#include "sim/sensor/develop.h"
 #include "sim/sensor/exposure.h"
 #include "tests/unit/sim/flat_picture.h"
+#include "tests/unit/sim/temporary_folder.h"
 
 namespace sim {
 namespace {
@@ -49,6 +53,8 @@ double SrgbEncode(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::p
 
 TEST(ResponseCurve, RoundsTheCurveEverywhere) {
   for (const Response response : {Response::linear, Response::srgb}) {
+    SensorParams params;
+    params.response = response;
     const ResponseCurve curve(response);
     for (int i = 0; i <= 1000000; ++i) {
       const float x = static_cast<float>(i) * 1e-6f;
@@ -58,9 +64,9 @@ TEST(ResponseCurve, RoundsTheCurveEverywhere) {
       ASSERT_LE(std::abs(curve.Encode(x) - exact), 0.5 + 1e-4) << x;
     }
     for (int code = 0; code < 256; ++code) {
-      EXPECT_EQ(curve.Encode(static_cast<float>(ResponseCurve::Decode(response, code / 255.0))), code);
+      EXPECT_EQ(curve.Encode(static_cast<float>(DecodeResponse(params, code / 255.0))), code);
       if (code == 255) continue;
-      const auto border = static_cast<float>(ResponseCurve::Decode(response, (code + 0.5) / 255));
+      const auto border = static_cast<float>(DecodeResponse(params, (code + 0.5) / 255));
       EXPECT_EQ(curve.Encode(border), code + 1);
       EXPECT_EQ(curve.Encode(std::nextafter(border, 0.0f)), code);
     }
@@ -74,6 +80,59 @@ TEST(ResponseCurve, ClipsWhatIsBeyond) {
   EXPECT_EQ(curve.Encode(1), 255);
   EXPECT_EQ(curve.Encode(INFINITY), 255);
   EXPECT_EQ(curve.Encode(std::nextafter(1.0f, 0.0f)), 255);
+}
+
+// A gamma curve of any unit with a light of code 0, and codes 101 to 103 that no light has.
+TEST(ResponseFile, GivesEachLightItsCode) {
+  const TemporaryFolder folder;
+  std::string text = "# inverse response\n";
+  for (int code = 0; code < 256; ++code) {
+    const int at = code > 100 && code < 104 ? 100 : code;
+    text += std::to_string(3 + 997 * std::pow(at / 255.0, 3)) + (code % 16 == 15 ? "\r\n" : " ");
+  }
+  SensorParams params = Linear(1000, 0, false);
+  params.light_of_code = ReadResponse(folder.Write("pcalib.txt", text));
+  ASSERT_EQ(params.light_of_code.size(), 256u);
+  EXPECT_NEAR(params.light_of_code[51], 0.003 + 0.997 * std::pow(0.2, 3), 1e-8);
+  EXPECT_EQ(params.light_of_code[255], 1);
+  const auto shown = [&](double light) {
+    const auto value = static_cast<float>(light);
+    return Sensor(params, 1).Capture(Flat(1, 1, {value, value, value}), 0);
+  };
+  for (int code = 0; code < 256; ++code) {
+    const double light = DecodeResponse(params, code / 255.0);
+    EXPECT_EQ(light, params.light_of_code[static_cast<std::size_t>(code)]);
+    if (code >= 100 && code <= 103) continue;  // one light
+    EXPECT_NEAR(255 * EncodeResponse(params, light), code, 1e-9);
+    for (const double off : {-0.49, 0.0, 0.49}) {
+      const double within = DecodeResponse(params, std::clamp((code + off) / 255, 0.0, 1.0));
+      EXPECT_EQ(shown(within).data[0], code) << off;
+    }
+  }
+  EXPECT_NEAR(255 * EncodeResponse(params, params.light_of_code[100]), 103, 1e-9) << "the highest of one light";
+  EXPECT_EQ(shown(0.002).data[0], 0) << "darker than code 0";
+  EXPECT_EQ(shown(2).data[0], 255);
+  params.bit_depth = 16;
+  EXPECT_NEAR(shown(0.3).wide[0] / 65535.0, EncodeResponse(params, 0.3), 1e-5);
+}
+
+TEST(ResponseFile, NamesEveryProblem) {
+  const TemporaryFolder folder;
+  const auto message = [](const std::filesystem::path& file) -> std::string {
+    try {
+      ReadResponse(file);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  EXPECT_THAT(
+      message(folder.Write("a.txt", "0 1 5\n4 x -1 nan\n")),
+      testing::AllOf(testing::HasSubstr("a.txt:2:1: 4 is less"), testing::HasSubstr("a.txt:2:3: 'x' is not"),
+                     testing::HasSubstr("a.txt:2:5: '-1' is not"), testing::HasSubstr("a.txt:2:8: 'nan' is not")));
+  EXPECT_THAT(message(folder.Write("b.txt", "1 1 1\n")), testing::HasSubstr("b.txt: holds no increasing light"));
+  EXPECT_THAT(message(folder.Write("c.txt", "")), testing::HasSubstr("c.txt: holds no increasing light"));
+  EXPECT_THAT(message(folder.path() / "none.txt"), testing::HasSubstr("none.txt: cannot be read"));
 }
 
 TEST(Sensor, WithoutNoiseTheCodeIsTheResponse) {

@@ -37,6 +37,11 @@ std::vector<fs::path> NamedFiles(const sim::Scenario& scenario) {
     add_motion(object.motion);
   }
   if (scenario.world.sky && !scenario.world.sky->file.empty()) files.push_back(scenario.world.sky->file);
+  const auto add_response = [&](const sim::SensorParams& sensor) {
+    if (!sensor.response_file.empty()) files.push_back(sensor.response_file);
+  };
+  add_response(scenario.sensor);
+  for (const sim::RigCamera& camera : scenario.cameras) add_response(camera.sensor);
   add_motion(scenario.motion);
   for (fs::path& file : files) file = fs::absolute(file);
   return files;

@@ -108,7 +108,7 @@ void WritePhotometricCalibration(const fs::path& folder, const sim::Scenario& sc
   if (scenario.sensor.processing.on()) return;
   std::string response;
   for (int code = 0; code < 256; ++code)
-    response += fmt::format("{:.9g} ", 255 * sim::ResponseCurve::Decode(scenario.sensor.response, code / 255.0));
+    response += fmt::format("{:.9g} ", 255 * sim::DecodeResponse(scenario.sensor, code / 255.0));
   base::WriteFile(folder / "pcalib.txt", response + "\n");
   const sim::Camera camera(scenario.camera);
   const sim::Vignetting vignetting(scenario.sensor.optics, camera);
