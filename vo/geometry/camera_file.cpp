@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -95,6 +96,34 @@ std::string_view FirstData(std::string_view text) {
 
 bool HasLine(std::string_view text, std::string_view begin) {
   return text.starts_with(begin) || text.find("\n" + std::string(begin)) != std::string_view::npos;
+}
+
+// Readout time that a calibration in another program's format states: in the words of camera.yaml, which that format's
+// reader skips, or in those of VINS (rolling_shutter: 0 or 1; rolling_shutter_tr in seconds).
+std::optional<double> ForeignReadout(std::string_view text, const std::filesystem::path& file) {
+  const std::string key = "rolling_shutter";
+  std::istringstream lines{std::string(text)};
+  std::string yaml;
+  int number = 0;
+  for (std::string line; std::getline(lines, line); yaml += '\n') {
+    ++number;
+    const bool is_misplaced = line.substr(std::min(line.find_first_not_of(" \t<{\"'"), line.size())).starts_with(key);
+    if (line.starts_with(key))
+      yaml += line;
+    else if (is_misplaced)
+      throw settings::Error(
+          {{file.string(), number, static_cast<int>(line.find(key)) + 1,
+            "'" + key + "' is not read here: state it on a line of its own without an indent, as in '" + key +
+                ": 26 ms'"}});
+  }
+  settings::Document document = settings::Document::FromText(yaml, file.string());
+  settings::Section root = document.root();
+  double readout_s = 0, rolls = 1;
+  const bool of_vins = root.Read("rolling_shutter_tr", readout_s, settings::Unit::time, settings::Range{-1, 1});
+  const bool is_stated = of_vins ? root.Require(key, rolls, settings::Range{0, 1})
+                                 : root.Read(key, readout_s, settings::Unit::time, settings::Range{-1, 1});
+  document.ThrowIfBad();
+  return is_stated ? std::optional(rolls * readout_s) : std::nullopt;
 }
 
 Camera CameraOfText(std::string_view text, const std::filesystem::path& file) {
@@ -192,7 +221,9 @@ Camera ReadCamera(const std::filesystem::path& file) {
   const std::optional<std::string> content = base::ReadFile(file);
   if (!content) settings::Document::FromFile(file);  // throws with the reason
   if (const std::string problem = base::TextProblem(content->substr(0, 1024)); !problem.empty()) refuse(problem);
-  const Camera camera = CameraOfText(base::WithoutMark(*content), file);
+  const std::string_view text = base::WithoutMark(*content);
+  Camera camera = CameraOfText(text, file);
+  if (!camera.readout_s) camera.readout_s = ForeignReadout(text, file);
   if (const std::string problem = ImplausiblePart(camera); !problem.empty()) refuse(problem);
   return camera;
 }

@@ -14,7 +14,8 @@ namespace vo {
 // camchain.yaml of Kalibr (cam0, pinhole with radtan or equidistant); camera_info of ROS (plumb_bob or equidistant);
 // cv::FileStorage of OpenCV's calibration sample (YAML or XML, fisheye_model included); OpenVINS, ORB-SLAM, OpenVSLAM,
 // camodocal, Basalt, COLMAP, DSO. Lens models with more coefficients are rejected, and so are focal lengths and
-// principal points that no camera has. Throws settings::Error with every problem, with line and column except for
+// principal points that no camera has. A readout time is read in every format, as `rolling_shutter` or in the words of
+// VINS. Throws settings::Error with every problem, with line and column except for
 // OpenCV's XML.
 Camera ReadCamera(const std::filesystem::path& file);
 

@@ -90,6 +90,15 @@ std::string NameOf(const base::Word& word) {
   return name;
 }
 
+// The words of "stamp name" where the name of a picture that is there has blanks or commas in it.
+void JoinName(const fs::path& folder, std::vector<base::Word>& words) {
+  const base::Word &first = words[1], &last = words.back();
+  const char* end = last.text.data() + last.text.size();
+  const base::Word name{{first.text.data(), static_cast<std::size_t>(end - first.text.data())}, first.column};
+  std::error_code error;
+  if (fs::is_regular_file(folder / NameOf(name), error)) words = {words[0], name};
+}
+
 // Which word names the image: the last; of a list of associations the picture that is no depth, which programs write
 // first or last. 0: both are.
 std::size_t ImageWord(const std::vector<base::Word>& words, const fs::path& folder) {
@@ -159,8 +168,9 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
     };
     if (const std::string problem = number == 1 ? base::TextProblem(line) : ""; !problem.empty())
       throw std::runtime_error(list.string() + ": " + problem);
-    const std::vector<base::Word> words = base::SplitWords(number == 1 ? base::WithoutMark(line) : line);
+    std::vector<base::Word> words = base::SplitWords(number == 1 ? base::WithoutMark(line) : line);
     if (words.empty() || base::IsComment(words[0].text)) continue;
+    if (format.words == 2 && words.size() > 2) JoinName(format.images, words);
     if (entries_.empty() && problems.empty() && words[0].text.starts_with("time")) continue;  // names of columns
     const std::size_t of_image = words.size() == format.words ? ImageWord(words, format.images) : 0;
     const std::string stamp(words[of_image == 0 ? 0 : of_image - 1].text);

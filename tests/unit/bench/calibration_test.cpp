@@ -3,20 +3,13 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <fstream>
 #include <map>
-#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <vector>
 
-#include "tools/bench/run/run_common.h"
-
 namespace vobench {
 namespace {
-
-namespace fs = std::filesystem;
 
 using campaign::CalibrationFormat;
 using Camera = sim::CameraParams;
@@ -144,34 +137,6 @@ TEST(Calibration, SaysWhatEachSystemDocuments) {
   EXPECT_THAT(orb3, HasSubstr("%YAML:1.0\n"));
   EXPECT_THAT(orb3, HasSubstr("File.version: \"1.0\"\nCamera.type: \"KannalaBrandt8\"\nCamera1.fx: 525.25\n"));
   EXPECT_THAT(orb3, HasSubstr("\nCamera.fps: 30\n")) << "a whole number";
-}
-
-// A readout time in another program's format: in our words, in those of VINS, and where nothing reads it.
-TEST(CameraOfSequence, ReadoutTimeInOtherFormats) {
-  const fs::path file = fs::path(testing::TempDir()) / "foreign_readout.yaml";
-  const auto readout = [&](const std::string& rest) {
-    std::ofstream(file) << "image_width: 640\nimage_height: 480\n"
-                           "camera_matrix: [525, 0, 320, 0, 525, 240, 0, 0, 1]\n"
-                           "distortion_coefficients: [0.1, 0, 0, 0]\n" +
-                               rest;
-    return CameraOfSequence(file.parent_path(), file.string()).readout_s;
-  };
-  EXPECT_EQ(readout("# rolling_shutter: 3\n"), std::nullopt);
-  EXPECT_EQ(readout("rolling_shutter: 0.03\n"), 0.03);
-  EXPECT_EQ(readout("rolling_shutter: -26 ms\n"), -0.026);
-  EXPECT_EQ(readout("rolling_shutter: 1  # flag\nrolling_shutter_tr: 0.033\n"), 0.033);
-  EXPECT_EQ(readout("rolling_shutter: 0\nrolling_shutter_tr: 0.033\n"), 0);
-  const auto problem = [&](const std::string& rest) -> std::string {
-    try {
-      readout(rest);
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_THAT(problem("rolling_shutter: 3 m\n"), HasSubstr("foreign_readout.yaml:5:18: 'rolling_shutter'"));
-  EXPECT_THAT(problem("sensor:\n  rolling_shutter: 0.03\n"), HasSubstr("foreign_readout.yaml:6: 'rolling_shutter'"));
-  fs::remove(file);
 }
 
 }  // namespace

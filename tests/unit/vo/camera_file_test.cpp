@@ -379,4 +379,22 @@ TEST_F(CameraFile, OfNoKnownKindIsOneSentence) {
   EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 0) << error;
 }
 
+// A readout time in another program's format: in our words, in those of VINS, and where nothing reads it.
+TEST_F(CameraFile, ReadoutTimeInOtherFormats) {
+  const auto file = [&](const std::string& rest) {
+    return Write("readout.yaml",
+                 "image_width: 640\nimage_height: 480\ncamera_matrix: [525, 0, 320, 0, 525, 240, 0, 0, 1]\n"
+                 "distortion_coefficients: [0.1, 0, 0, 0]\n" +
+                     rest);
+  };
+  const auto readout = [&](const std::string& rest) { return vo::ReadCamera(file(rest)).readout_s; };
+  EXPECT_EQ(readout("# rolling_shutter: 3\n"), std::nullopt);
+  EXPECT_EQ(readout("rolling_shutter: 0.03\n"), 0.03);
+  EXPECT_EQ(readout("rolling_shutter: -26 ms\n"), -0.026);
+  EXPECT_EQ(readout("rolling_shutter: 1  # flag\nrolling_shutter_tr: 0.033\n"), 0.033);
+  EXPECT_EQ(readout("rolling_shutter: 0\nrolling_shutter_tr: 0.033\n"), 0);
+  EXPECT_THAT(ErrorOf(file("rolling_shutter: 3 m\n")), HasSubstr("readout.yaml:5:18: 'rolling_shutter'"));
+  EXPECT_THAT(ErrorOf(file("sensor:\n  rolling_shutter: 0.03\n")), HasSubstr("readout.yaml:6:3: 'rolling_shutter'"));
+}
+
 }  // namespace

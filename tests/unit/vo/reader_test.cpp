@@ -48,6 +48,14 @@ TEST_F(Reader, ReadsColourAndGreyWithExactStamps) {
   EXPECT_FALSE(reader.Next());
 }
 
+TEST_F(Reader, ReadsNamesWithBlanks) {
+  fs::copy(folder_ / "rgb/b.png", folder_ / "rgb/my frame, 1.png");
+  List("1.0 rgb/my frame, 1.png\r\n2.0,\"rgb\\my frame, 1.png\"\n3.0 rgb/my frame.png\n");
+  EXPECT_EQ(ErrorOfOpening(), (folder_ / "rgb.txt").string() + ":3: expected 'timestamp filename'");
+  List("1.0 rgb/my frame, 1.png\r\n2.0,\"rgb\\my frame, 1.png\"\n");
+  EXPECT_EQ(vo::SequenceReader(folder_).size(), 2u);
+}
+
 TEST_F(Reader, ReadsTheOriginalIclNuimLayout) {
   std::ofstream(folder_ / "associations.txt") << "1 depth/1.png 1 rgb/a.png\n2 depth/2.png 2 rgb/b.png\n";
   vo::SequenceReader reader(folder_);

@@ -5,13 +5,10 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <sstream>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "tools/base/files.h"
 #include "tools/bench/errors.h"
 #include "tools/bench/progress.h"
 #include "tools/bench/result/output_folder.h"
@@ -60,33 +57,6 @@ std::string CalibrationOf(const fs::path& sequence, const std::optional<std::str
                  ": no camera.yaml in it; say which camera with --camera PRESET|FILE (`camera` in a campaign)");
 }
 
-// Readout time that a calibration in another program's format states: in the words of camera.yaml, which that format's
-// reader skips, or in those of VINS (rolling_shutter: 0 or 1; rolling_shutter_tr in seconds).
-std::optional<double> ForeignReadout(const std::string& file) {
-  constexpr std::string_view kKey = "rolling_shutter";
-  std::istringstream text(base::ReadFile(file).value_or(""));
-  std::string yaml;
-  for (std::string line; std::getline(text, line); yaml += '\n') {
-    const bool is_misplaced = line.substr(std::min(line.find_first_not_of(" \t<{\"'"), line.size())).starts_with(kKey);
-    if (line.starts_with(kKey))
-      yaml += line;
-    else if (is_misplaced)
-      throw BadInput(
-          fmt::format("{}:{}: '{}' is not read here: state it on a line of its own without an indent, as in "
-                      "'{}: 26 ms'",
-                      file, std::ranges::count(yaml, '\n') + 1, kKey, kKey));
-  }
-  settings::Document document = settings::Document::FromText(yaml, file);
-  settings::Section root = document.root();
-  double readout_s = 0, rolls = 1;
-  const bool of_vins = root.Read("rolling_shutter_tr", readout_s, settings::Unit::time, settings::Range{-1, 1});
-  const bool is_stated = of_vins
-                             ? root.Require(std::string(kKey), rolls, settings::Range{0, 1})
-                             : root.Read(std::string(kKey), readout_s, settings::Unit::time, settings::Range{-1, 1});
-  document.ThrowIfBad();
-  return is_stated ? std::optional(rolls * readout_s) : std::nullopt;
-}
-
 void RequireSize(const vo::Frame& frame, const vo::Camera& camera, const TrackOptions& options) {
   if (frame.image.cols == camera.width && frame.image.rows == camera.height) return;
   throw BadInput(
@@ -120,10 +90,7 @@ std::vector<std::string> WarningsOf(const RunEntry& run, std::size_t frames, std
 }  // namespace
 
 vo::Camera CameraOfSequence(const fs::path& sequence, const std::optional<std::string>& camera) {
-  const std::string calibration = CalibrationOf(sequence, camera);
-  vo::Camera read = vo::CameraFrom(calibration);
-  if (!read.readout_s) read.readout_s = ForeignReadout(calibration);
-  return read;
+  return vo::CameraFrom(CalibrationOf(sequence, camera));
 }
 
 std::string RecordOfTracking(const vo::Camera& c, const std::string& resolved) {
