@@ -1,5 +1,4 @@
 // Entropy-coded data of JPEG files. Private to limits.
-// Source: ITU T.81, annexes B, C and F.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +7,8 @@
 
 namespace limits {
 
-// What is missing at the end, or damaged within the data of baseline pictures, which decoders complete with grey or
-// other colours; empty: nothing. Bytes after the end are ignored.
-std::string JpegProblem(std::span<const std::uint8_t> file);
+// What libjpeg finds damaged in the data of a whole file that is not progressive, and completes with other colours;
+// empty: nothing.
+std::string JpegDataProblem(std::span<const std::uint8_t> file);
 
 }  // namespace limits

@@ -245,6 +245,28 @@ std::string PngEndProblem(Bytes file) {
   }
 }
 
+std::string JpegEndProblem(Bytes file) {
+  constexpr std::uint8_t kStartOfScan = 0xda, kEndOfImage = 0xd9;
+  const char* const truncated = "truncated JPEG: the end marker is missing";
+  bool in_scan = false;
+  for (std::size_t at = 2;;) {
+    if (in_scan) {  // entropy-coded data goes on until a marker that is neither a stuffed zero nor a restart
+      while (at + 1 < file.size() &&
+             (file[at] != 0xff || file[at + 1] == 0x00 || (file[at + 1] >= 0xd0 && file[at + 1] <= 0xd7))) {
+        ++at;
+      }
+    }
+    while (at + 1 < file.size() && file[at] == 0xff && file[at + 1] == 0xff) ++at;  // fill bytes
+    if (at + 2 > file.size()) return truncated;
+    if (file[at] != 0xff) return "damaged JPEG: no marker at byte " + std::to_string(at);
+    const std::uint8_t marker = file[at + 1];
+    if (marker == kEndOfImage) return "";
+    if (at + 4 > file.size()) return truncated;
+    at += 2 + static_cast<std::size_t>(Number(file, at + 2, 2, false));
+    in_scan = marker == kStartOfScan;
+  }
+}
+
 }  // namespace
 
 std::string PictureSizeProblem(std::int64_t width, std::int64_t height, std::size_t bytes) {
@@ -286,7 +308,9 @@ bool IsTga(Bytes file) {
 
 std::string PictureEndProblem(Bytes file) {
   if (Begins(file, "\x89PNG\r\n\x1a\n")) return PngEndProblem(file);
-  return Begins(file, "\xff\xd8") ? JpegProblem(file) : "";
+  if (!Begins(file, "\xff\xd8")) return "";
+  const std::string problem = JpegEndProblem(file);
+  return problem.empty() ? JpegDataProblem(file) : problem;
 }
 
 std::string ExrProblem(Bytes file) {

@@ -23,7 +23,8 @@ DEBIAN_NAMES = {
     "Apache-2.0 WITH LLVM-exception": ("APACHE-2-LLVM-EXCEPTIONS",),
     "MPL-2.0": ("MPL-2",),
     "ISC": ("ISC",),
-    "Zlib": ("zlib/libpng",),
+    "Zlib": ("zlib/libpng", "Zlib"),
+    "IJG": ("BSD-BY-LC-NE",),
     "HPND": ("Custom-MIT-like",),
     "PSF-2.0": ("Python Software Foundation",),
     "Artistic-2.0": ("Artistic-2.0",),
@@ -58,7 +59,7 @@ def copyright_of(package):
 
 
 def says(text, words):
-    """Of all files of the package, where the copyright file can be read by machines; else anywhere in it."""
+    """Of all files of the package, where the copyright file can be read by machines and has a licence of them; else anywhere in it."""
     if "Format:" not in text[:200]:
         return words in text
     stars = []
@@ -67,7 +68,7 @@ def says(text, words):
         licence = re.search(r"^License:[ \t]*(.*)", paragraph, re.M)
         if files and licence and "*" in files.group(1).split():
             stars.append(licence.group(1).strip())
-    return words in stars
+    return words in stars if stars else all(word in text for word in words.split(" AND "))
 
 
 @functools.cache

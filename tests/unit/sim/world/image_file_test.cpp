@@ -117,14 +117,14 @@ TEST(ImageFile, JpegDamagedInTheMiddle) {
       const std::size_t middle = whole.size() / 2;
       std::string zeros = whole;
       zeros.replace(middle, 100, 100, '\0');
-      EXPECT_THAT(Complaint(zeros), testing::StartsWith("damaged JPEG: its data"));
+      EXPECT_THAT(Complaint(zeros), testing::StartsWith("damaged JPEG: Corrupt JPEG data"));
       EXPECT_THAT(Complaint(whole.substr(0, middle) + whole.substr(middle + 200)),
-                  testing::StartsWith("damaged JPEG: its data"));
+                  testing::StartsWith("damaged JPEG: Corrupt JPEG data"));
       if (restart == 0) continue;
       std::string lost = whole;
       const std::size_t marker = whole.find("\xff\xd3", 700);
       ASSERT_NE(marker, std::string::npos);
-      EXPECT_THAT(Complaint(lost.erase(marker, 2)), testing::StartsWith("damaged JPEG: its data"));
+      EXPECT_THAT(Complaint(lost.erase(marker, 2)), testing::StartsWith("damaged JPEG: Corrupt JPEG data"));
     }
   }
 }
