@@ -138,9 +138,12 @@ class ThreeMfReader {
     std::size_t first = 0;                                // vertex of the object
     std::map<std::pair<unsigned, bool>, Polygons> parts;  // by material, and whether its corners have colours
     ForEachTag(text, [&](std::string_view tag) {
-      const std::size_t end = std::min(tag.find_first_of(" \t\r\n/>", 2), tag.size());
-      const std::string_view prefixed = tag.substr(1, end - 1), kind = prefixed.substr(prefixed.find(':') + 1);
-      if (kind == "model") {
+      const std::size_t begin = tag.starts_with("</") ? 2 : 1;
+      const std::size_t end = std::min(tag.find_first_of(" \t\r\n/>", begin), tag.size());
+      const std::string_view prefixed = tag.substr(begin, end - begin), kind = prefixed.substr(prefixed.find(':') + 1);
+      if (begin == 2) {
+        if (kind == "object") EndObject(object, parts);
+      } else if (kind == "model") {
         const std::map<std::string_view, double> units = {
             {"micron", 1e-6}, {"centimeter", 0.01}, {"inch", 0.0254}, {"foot", 0.3048}, {"meter", 1}};
         const auto unit = units.find(Attribute(tag, "unit"));
@@ -198,14 +201,16 @@ class ThreeMfReader {
         objects_[object].components.emplace_back(key(tag, "objectid"), Transform(Attribute(tag, "transform")));
       } else if (kind == "item") {
         items_[name].emplace_back(key(tag, "objectid"), Transform(Attribute(tag, "transform")));
-      } else if (tag == "</object") {
-        for (const auto& [of, part] : parts) {
-          objects_[object].meshes.push_back(static_cast<unsigned>(scene_.meshes.size()));
-          scene_.meshes.emplace_back().material = of.first;
-          AppendPolygons(part, pools_, glm::dvec3(0), scene_.meshes.back());
-        }
       }
     });
+  }
+
+  void EndObject(const std::string& name, const std::map<std::pair<unsigned, bool>, Polygons>& parts) {
+    for (const auto& [of, part] : parts) {
+      objects_[name].meshes.push_back(static_cast<unsigned>(scene_.meshes.size()));
+      scene_.meshes.emplace_back().material = of.first;
+      AppendPolygons(part, pools_, glm::dvec3(0), scene_.meshes.back());
+    }
   }
 
   // The material of a picture in the archive.

@@ -1,0 +1,356 @@
+// Random valid OFF, 3MF and COLLADA files, in all pairs of what their writers do differently, against their own
+// description.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <libdeflate.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/unit/sim/world/described_mesh.h"
+
+namespace sim::test {
+namespace {
+
+// line end, normals and texture coordinates, colours (none, vertices 0 ... 255, vertices 0 ... 1, faces 0 ... 255, faces
+// 0 ... 1), alpha, counts beside the header's word, comments, sides, number format
+constexpr std::array kOffCounts = {2, 4, 5, 2, 2, 2, 3, 3};
+
+struct OffFile {
+  std::string text;
+  Expected expected;
+
+  OffFile(const std::array<int, kOffCounts.size()>& c, Random& random) {
+    const bool normal = c[1] % 2 == 1, uv = c[1] >= 2, of_vertices = c[2] == 1 || c[2] == 2, of_faces = c[2] > 2;
+    const std::string end = c[0] == 0 ? "\n" : "\r\n";
+    const auto numbers = [&](const auto& v, int count) {
+      std::string words;
+      for (int i = 0; i < count; ++i)
+        words += c[7] == 0   ? fmt::format("{:.9g} ", v[i])
+                 : c[7] == 1 ? fmt::format("{:.9e}  ", v[i])
+                             : fmt::format("{:.17g}\t", v[i]);
+      return words;
+    };
+    const auto color = [&](const glm::dvec3& of) {
+      if (c[2] % 2 == 0) return numbers(of, 3) + (c[3] == 1 ? "0.5 " : "");
+      return fmt::format("{:.0f} {:.0f} {:.0f} ", 255 * of.r, 255 * of.g, 255 * of.b) + (c[3] == 1 ? "128 " : "");
+    };
+    expected.has_normals = normal, expected.has_colors = c[2] > 0;
+    std::string vertices, faces;
+    int at = 0;
+    for (int f = 0; f < 5; ++f) {
+      const Face face = random.Polygon(3 + c[6], of_faces);
+      faces += std::to_string(face.corners.size()) + " ";
+      for (const Corner& corner : face.corners) {
+        vertices += numbers(corner.position, 3) + (normal ? numbers(corner.normal, 3) : "") +
+                    (of_vertices ? color(corner.color) : "") + (uv ? numbers(corner.uv, 2) : "") + end;
+        faces += " " + std::to_string(at++);
+      }
+      faces += "  " + (of_faces ? color(face.corners[0].color) : "") + (c[5] == 1 ? "# a face" : "") + end;
+      expected.faces.push_back(face);
+    }
+    text = std::string(uv ? "ST" : "") + (of_vertices ? "C" : "") + (normal ? "N" : "") + "OFF" +
+           (c[4] == 1 ? " " : end) + (c[5] == 1 && c[4] == 0 ? "# by hand" + end + end : "") +
+           fmt::format("{} 5 0", at) + end + vertices + faces;
+  }
+};
+
+std::string LittleEndian(std::size_t value, int bytes) {
+  std::string text;
+  for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i) & 255);
+  return text;
+}
+
+// A zip archive of files by name.
+std::string ZipOf(const std::map<std::string, std::string>& files, bool deflated) {
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(6), libdeflate_free_compressor);
+  std::string archive, directory;
+  for (const auto& [name, content] : files) {
+    std::string data = content;
+    if (deflated) {
+      data.resize(libdeflate_deflate_compress_bound(compressor.get(), content.size()));
+      data.resize(
+          libdeflate_deflate_compress(compressor.get(), content.data(), content.size(), data.data(), data.size()));
+    }
+    const std::string header =
+        LittleEndian(20, 2) + LittleEndian(0, 2) + LittleEndian(deflated ? 8 : 0, 2) + LittleEndian(0, 4) +
+        LittleEndian(libdeflate_crc32(0, content.data(), content.size()), 4) + LittleEndian(data.size(), 4) +
+        LittleEndian(content.size(), 4) + LittleEndian(name.size(), 2) + LittleEndian(0, 2);
+    directory += "PK\1\2" + LittleEndian(20, 2) + header + LittleEndian(0, 10) + LittleEndian(archive.size(), 4) + name;
+    archive += "PK\3\4" + header + name + data;
+  }
+  return archive + directory + "PK\5\6" + LittleEndian(0, 4) + LittleEndian(files.size(), 2) +
+         LittleEndian(files.size(), 2) + LittleEndian(directory.size(), 4) + LittleEndian(archive.size(), 4) +
+         LittleEndian(0, 2);
+}
+
+constexpr std::array<std::pair<const char*, double>, 6> kUnits = {{{"millimeter", 0.001},
+                                                                   {"micron", 1e-6},
+                                                                   {"centimeter", 0.01},
+                                                                   {"inch", 0.0254},
+                                                                   {"foot", 0.3048},
+                                                                   {"meter", 1.0}}};
+
+// unit (none: millimetres), packing, prefix of the elements, properties (none, base materials of objects, of triangles,
+// colours of triangles, of corners, picture), turned item, object of components, comments, alpha, sides
+constexpr std::array kThreeMfCounts = {7, 2, 2, 6, 2, 2, 2, 2, 3};
+
+struct ThreeMfFile {
+  std::string bytes;
+  Expected expected;
+
+  ThreeMfFile(const std::array<int, kThreeMfCounts.size()>& c, Random& random) {
+    const bool of_objects = c[3] == 1, base = c[3] == 1 || c[3] == 2, of_triangles = c[3] == 3, of_corners = c[3] == 4,
+               picture = c[3] == 5;
+    const auto& [unit_name, unit] = kUnits[static_cast<std::size_t>(c[0] % 6)];
+    const std::string p = c[2] == 1 ? "c:" : "", alpha = c[7] == 1 ? "80" : "";
+    const auto code = [&](const glm::dvec3& color) {
+      return fmt::format("#{:02X}{:02x}{:02X}{}", std::lround(255 * color.r), std::lround(255 * color.g),
+                         std::lround(255 * color.b), alpha);
+    };
+    expected.has_colors = of_triangles || of_corners, expected.has_uvs = picture;
+    std::string resources;
+    if (base) {
+      resources += fmt::format("<{}basematerials id=\"8\">", p);
+      expected.base_colors.clear();
+      for (const glm::dvec3& coded : {glm::dvec3(51, 102, 204) / 255.0, glm::dvec3(255, 128, 0) / 255.0}) {
+        resources += fmt::format("<{}base name='of &lt;{}' displaycolor=\"{}\"/>", p, coded.b, code(coded));
+        expected.base_colors.emplace_back(SrgbToLinear(coded.r), SrgbToLinear(coded.g), SrgbToLinear(coded.b));
+      }
+      resources += fmt::format("</{}basematerials>", p);
+    }
+    // Where the item's transform, and that of a component, bring a vertex to.
+    const auto written = [&](const glm::dvec3& position) {
+      glm::dvec3 at = position / unit;
+      if (c[4] == 1) at = glm::dvec3(at.y - 20, 10 - at.x, at.z - 30);
+      return c[5] == 1 ? at - glm::dvec3(1, 2, 3) : at;
+    };
+    std::array<std::string, 2> vertices, triangles;
+    std::array<int, 2> count = {0, 0};
+    std::string properties;
+    int property = 0;
+    for (int f = 0; f < 5; ++f) {
+      Face face = random.Polygon(3 + c[8], of_triangles);
+      if (base) face.material = static_cast<std::size_t>(f % 2);
+      const std::size_t object = of_objects ? face.material : 0;
+      const int sides = static_cast<int>(face.corners.size()), first = property;
+      for (const Corner& corner : face.corners) {
+        const glm::dvec3 at = written(corner.position);
+        vertices[object] += fmt::format("<{}vertex x=\"{:.17g}\" y=\"{:.17g}\" z='{:.17g}' />\n", p, at.x, at.y, at.z);
+        if (picture) properties += fmt::format("<m:tex2coord u=\"{:.9g}\" v=\"{:.9g}\"/>", corner.uv.x, corner.uv.y);
+        if (of_corners || (of_triangles && property == first))
+          properties += fmt::format("<m:color color=\"{}\"/>", code(corner.color));
+        if (picture || of_corners || (of_triangles && property == first)) ++property;
+      }
+      for (int i = 2; i < sides; ++i) {
+        triangles[object] += fmt::format("<{}triangle v1=\"{}\" v2=\"{}\" v3=\"{}\"", p, count[object],
+                                         count[object] + i - 1, count[object] + i);
+        if (c[3] == 2) triangles[object] += fmt::format(" pid=\"8\" p1=\"{}\"", face.material);
+        if (of_triangles) triangles[object] += fmt::format(" pid=\"9\" p1=\"{}\"", first);
+        if (of_corners || picture)
+          triangles[object] += fmt::format(" p1=\"{}\" p2=\"{}\" p3=\"{}\"", first, first + i - 1, first + i);
+        triangles[object] += "/>";
+      }
+      count[object] += sides;
+      expected.faces.push_back(face);
+    }
+    if (picture)
+      resources +=
+          "<m:texture2d id=\"7\" path=\"/3D/Textures/a.png\" contenttype=\"image/png\"/>"
+          "<m:texture2dgroup id=\"9\" texid=\"7\">" +
+          properties + "</m:texture2dgroup>";
+    if (of_triangles || of_corners) resources += "<m:colorgroup id=\"9\">" + properties + "</m:colorgroup>";
+    std::string items;
+    const std::string turn = c[4] == 1 ? " transform=\"0 1 0 -1 0 0 0 0 1 10 20 30\"" : "";
+    for (std::size_t object = 0; object < (of_objects ? 2u : 1u); ++object) {
+      const std::string of = of_objects              ? fmt::format(" pid=\"8\" pindex=\"{}\"", object)
+                             : of_corners || picture ? " pid=\"9\" pindex=\"0\""
+                                                     : "";
+      resources += fmt::format(
+          "<{0}object id=\"{1}\" type=\"model\"{2}><{0}mesh><{0}vertices>{3}</{0}vertices>"
+          "<{0}triangles>{4}</{0}triangles></{0}mesh></{0}object>",
+          p, object + 1, of, vertices[object], triangles[object]);
+      if (c[5] == 1)
+        resources += fmt::format(
+            "<{0}object id=\"{1}\"><{0}components><{0}component objectid=\"{2}\" "
+            "transform=\"1 0 0 0 1 0 0 0 1 1 2 3\"/></{0}components></{0}object>",
+            p, object + 11, object + 1);
+      items += fmt::format("<{}item objectid=\"{}\"{}/>", p, object + (c[5] == 1 ? 11 : 1), turn);
+    }
+    const std::string model = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<{0}model {1} xml:lang=\"en-US\" xmlns{2}="
+        "\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" xmlns:m="
+        "\"http://schemas.microsoft.com/3dmanufacturing/material/2015/02\">{3}<{0}resources>{4}"
+        "</{0}resources><{0}build>{5}</{0}build></{0}model>",
+        p, c[0] == 6 ? "" : fmt::format("unit=\"{}\"", unit_name), c[2] == 1 ? ":c" : "",
+        c[6] == 1 ? "<!-- <item objectid=\"1\"/> -->" : "", resources, items);
+    std::map<std::string, std::string> files = {
+        {"3D/3dmodel.model", model},
+        {"[Content_Types].xml",
+         "<?xml version=\"1.0\"?><Types "
+         "xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"><Default "
+         "Extension=\"rels\" ContentType=\"application/vnd.openxmlformats-package.relationships+xml\"/><Default "
+         "Extension=\"model\" ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>"},
+        {"_rels/.rels",
+         "<?xml version=\"1.0\"?><Relationships xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+         "<Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" "
+         "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>"}};
+    if (picture) files["3D/Textures/a.png"] = EncodeColor(".png", 10, 20, 30);
+    bytes = ZipOf(files, c[1] == 1);
+  }
+};
+
+// version, up axis, unit, primitives (triangles, polylist, polygons), normals, texture coordinates, an index for all or
+// one each, shading, transform (matrix, parts), sides
+constexpr std::array kColladaCounts = {2, 3, 2, 3, 2, 2, 2, 3, 2, 3};
+
+struct ColladaFile {
+  std::string text;
+  Expected expected;
+
+  ColladaFile(const std::array<int, kColladaCounts.size()>& c, Random& random) {
+    const bool is_15 = c[0] == 1, normal = c[4] == 1, uv = c[5] == 1, apart = c[6] == 1;
+    const double unit = c[2] == 0 ? 1 : 0.01;
+    const std::string axis = std::array{"Y_UP", "Z_UP", "X_UP"}[static_cast<std::size_t>(c[1])],
+                      shading = std::array{"lambert", "phong", "blinn"}[static_cast<std::size_t>(c[7])];
+    expected.has_normals = normal, expected.has_uvs = uv;
+    if (!uv) expected.base_colors = {glm::dvec3(0.25, 0.5, 0.75), glm::dvec3(1, 0.5, 0)};
+    // Into the file's axes; the node turns by 90 degrees about z and moves by (1, 2, 3).
+    const auto of_axes = [&](const glm::dvec3& v) {
+      return c[1] == 0 ? v : c[1] == 1 ? glm::dvec3(v.x, -v.z, v.y) : glm::dvec3(v.y, -v.x, v.z);
+    };
+    const auto turned_back = [](const glm::dvec3& v) { return glm::dvec3(v.y, -v.x, v.z); };
+    std::string positions, normals, uvs;
+    std::array<std::string, 2> primitives, sizes;
+    std::array<int, 2> count = {0, 0};
+    int at = 0;
+    for (int f = 0; f < 5; ++f) {
+      Face face = random.Polygon(3 + c[9], false);
+      const auto m = static_cast<std::size_t>(f % 2);
+      if (!uv) face.material = m;
+      const int sides = static_cast<int>(face.corners.size());
+      for (const Corner& corner : face.corners) {
+        const glm::dvec3 p = turned_back(of_axes(corner.position) / unit - glm::dvec3(1, 2, 3)),
+                         n = turned_back(of_axes(corner.normal));
+        positions += fmt::format("{:.9g} {:.9g} {:.9g}\n", p.x, p.y, p.z);
+        const std::string words = fmt::format("{:.9g} {:.9g} {:.9g} ", n.x, n.y, n.z);
+        normals = apart ? words + normals : normals + words;  // from the last to the first
+        uvs += fmt::format("{:.9g} {:.9g} ", corner.uv.x, corner.uv.y);
+      }
+      const int all = 5 * sides;
+      const auto index = [&](int corner) {
+        const int i = at + corner;
+        return !apart ? fmt::format("{} ", i)
+                      : fmt::format("{} ", i) + (normal ? fmt::format("{} ", all - 1 - i) : "") +
+                            (uv ? fmt::format("{} ", i) : "");
+      };
+      std::string corners;
+      for (int i = 0; i < sides; ++i) corners += index(i);
+      if (c[3] == 0) {
+        for (int i = 2; i < sides; ++i) primitives[m] += index(0) + index(i - 1) + index(i);
+        count[m] += sides - 2;
+      } else {
+        primitives[m] += c[3] == 1 ? corners : "<p>" + corners + "</p>";
+        sizes[m] += fmt::format("{} ", sides);
+        ++count[m];
+      }
+      at += sides;
+      expected.faces.push_back(face);
+    }
+    const auto source = [&](const char* id, const std::string& numbers, const std::vector<const char*>& names) {
+      std::string params;
+      for (const char* name : names) params += fmt::format("<param name=\"{}\" type=\"float\"/>", name);
+      return fmt::format(
+          "<source id=\"{0}\"><float_array id=\"{0}-a\" count=\"{1}\">{2}</float_array><technique_common><accessor "
+          "source=\"#{0}-a\" count=\"{3}\" stride=\"{4}\">{5}</accessor></technique_common></source>",
+          id, static_cast<std::size_t>(at) * names.size(), numbers, at, names.size(), params);
+    };
+    std::string geometry = source("p", positions, {"X", "Y", "Z"});
+    std::string inputs = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>";
+    if (normal) {
+      geometry += source("n", normals, {"X", "Y", "Z"});
+      inputs += fmt::format("<input semantic=\"NORMAL\" source=\"#n\" offset=\"{}\"/>", apart ? 1 : 0);
+    }
+    if (uv) {
+      geometry += source("t", uvs, {"S", "T"});
+      inputs +=
+          fmt::format("<input semantic=\"TEXCOORD\" source=\"#t\" offset=\"{}\" set=\"0\"/>", apart ? 1 + c[4] : 0);
+    }
+    geometry += "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>";
+    std::string effects, materials, bound;
+    const std::string kind = std::array{"triangles", "polylist", "polygons"}[static_cast<std::size_t>(c[3])];
+    for (std::size_t m = 0; m < 2; ++m) {
+      geometry += fmt::format("<{} material=\"s{}\" count=\"{}\">", kind, m, count[m]) + inputs +
+                  (c[3] == 1 ? "<vcount>" + sizes[m] + "</vcount>" : "") +
+                  (c[3] == 2 ? primitives[m] : "<p>" + primitives[m] + "</p>") + "</" + kind + ">";
+      const glm::dvec3 kd = uv ? glm::dvec3(1) : expected.base_colors[m];
+      effects += fmt::format("<effect id=\"e{}\"><profile_COMMON>", m);
+      if (uv && !is_15)
+        effects +=
+            "<newparam sid=\"f\"><surface type=\"2D\"><init_from>i</init_from></surface></newparam><newparam "
+            "sid=\"g\"><sampler2D><source>f</source></sampler2D></newparam>";
+      if (uv && is_15) effects += "<newparam sid=\"g\"><sampler2D><instance_image url=\"#i\"/></sampler2D></newparam>";
+      effects += "<technique sid=\"common\"><" + shading + "><diffuse>" +
+                 (uv ? "<texture texture=\"g\" texcoord=\"U\"/>"
+                     : fmt::format("<color>{} {} {} 1</color>", kd.r, kd.g, kd.b)) +
+                 "</diffuse></" + shading + "></technique></profile_COMMON></effect>";
+      materials += fmt::format("<material id=\"m{0}\"><instance_effect url=\"#e{0}\"/></material>", m);
+      bound += fmt::format("<instance_material symbol=\"s{0}\" target=\"#m{0}\">", m) +
+               (uv ? "<bind_vertex_input semantic=\"U\" input_semantic=\"TEXCOORD\" input_set=\"0\"/>" : "") +
+               "</instance_material>";
+    }
+    const std::string picture = is_15 ? "<ref>a%20picture.png</ref>" : "a%20picture.png";
+    text = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n<COLLADA xmlns=\"http://www.collada.org/{}/COLLADASchema\" "
+        "version=\"{}\"><asset><created>2020-01-01T00:00:00</created><modified>2020-01-01T00:00:00</modified><unit "
+        "name=\"u\" meter=\"{}\"/><up_axis>{}</up_axis></asset>",
+        is_15 ? "2008/03" : "2005/11", is_15 ? "1.5.0" : "1.4.1", unit, axis);
+    if (uv) text += "<library_images><image id=\"i\"><init_from>" + picture + "</init_from></image></library_images>";
+    text += "<library_effects>" + effects + "</library_effects><library_materials>" + materials +
+            "</library_materials><library_geometries><geometry id=\"g\"><mesh>" + geometry +
+            "</mesh></geometry></library_geometries><library_visual_scenes><visual_scene id=\"w\"><node id=\"o\">" +
+            (c[8] == 0 ? "<matrix>0 -1 0 1 1 0 0 2 0 0 1 3 0 0 0 1</matrix>"
+                       : "<translate>1 2 3</translate><rotate>0 0 1 90</rotate><scale>1 1 1</scale>") +
+            "<instance_geometry url=\"#g\"><bind_material><technique_common>" + bound +
+            "</technique_common></bind_material></instance_geometry></node></visual_scene></library_visual_scenes>"
+            "<scene><instance_visual_scene url=\"#w\"/></scene></COLLADA>\n";
+  }
+};
+
+TEST(FormatProperty, RandomOffFilesAreWhatTheyDescribe) {
+  ExpectDescribed(600, kOffCounts,
+                  [](const auto& choices, Random& random, const Folder& folder, const std::string& name,
+                     std::filesystem::path& file) {
+                    const OffFile made(choices, random);
+                    file = folder.Write(name + "/m.off", made.text);
+                    return made.expected;
+                  });
+}
+
+TEST(FormatProperty, RandomThreeMfFilesAreWhatTheyDescribe) {
+  ExpectDescribed(600, kThreeMfCounts,
+                  [](const auto& choices, Random& random, const Folder& folder, const std::string& name,
+                     std::filesystem::path& file) {
+                    const ThreeMfFile made(choices, random);
+                    file = folder.Write(name + "/m.3mf", made.bytes);
+                    return made.expected;
+                  });
+}
+
+TEST(FormatProperty, RandomColladaFilesAreWhatTheyDescribe) {
+  ExpectDescribed(200, kColladaCounts,
+                  [](const auto& choices, Random& random, const Folder& folder, const std::string& name,
+                     std::filesystem::path& file) {
+                    const ColladaFile made(choices, random);
+                    file = folder.Write(name + "/m.dae", made.text);
+                    return made.expected;
+                  });
+}
+
+}  // namespace
+}  // namespace sim::test
