@@ -107,7 +107,8 @@ struct ThreeMfFile {
   ThreeMfFile(const std::array<int, kThreeMfCounts.size()>& c, Random& random) {
     const bool of_objects = c[3] == 1, base = c[3] == 1 || c[3] == 2, of_triangles = c[3] == 3, of_corners = c[3] == 4,
                picture = c[3] == 5;
-    const auto& [unit_name, unit] = kUnits[static_cast<std::size_t>(c[0] % 6)];
+    const std::string unit_name = kUnits[static_cast<std::size_t>(c[0] % 6)].first;
+    const double unit = kUnits[static_cast<std::size_t>(c[0] % 6)].second;
     const std::string p = c[2] == 1 ? "c:" : "", alpha = c[7] == 1 ? "80" : "";
     const auto code = [&](const glm::dvec3& color) {
       return fmt::format("#{:02X}{:02x}{:02X}{}", std::lround(255 * color.r), std::lround(255 * color.g),
