@@ -12,8 +12,8 @@
 
 namespace sim {
 
-// Camera response R(x), light x and code in [0, 1], and its inverse: x itself, the sRGB curve, or that of light_of_code,
-// linear in between.
+// Camera response R(x), light x and code in [0, 1], and its inverse: x itself, the sRGB curve, or that of
+// light_of_code, linear in between.
 double EncodeResponse(const SensorParams& params, double x);
 double DecodeResponse(const SensorParams& params, double code);
 

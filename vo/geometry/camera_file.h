@@ -15,8 +15,7 @@ namespace vo {
 // cv::FileStorage of OpenCV's calibration sample (YAML or XML, fisheye_model included); OpenVINS, ORB-SLAM, OpenVSLAM,
 // camodocal, Basalt, COLMAP, DSO. Lens models with more coefficients are rejected, and so are focal lengths and
 // principal points that no camera has. A readout time is read in every format, as `rolling_shutter` or in the words of
-// VINS. Throws settings::Error with every problem, with line and column except for
-// OpenCV's XML.
+// VINS. Throws settings::Error with every problem, with line and column except for OpenCV's XML.
 Camera ReadCamera(const std::filesystem::path& file);
 
 // Name of a preset, or a file; a preset rather than a folder of that name. Also throws std::invalid_argument.

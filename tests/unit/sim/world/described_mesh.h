@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <glm/geometric.hpp>
 #include <random>
 #include <string>
@@ -161,6 +162,18 @@ void ExpectDescribed(int files, const std::array<int, n>& counts, const Make& ma
     }
   }
   EXPECT_EQ(pairwise.drawn(), pairwise.all());
+}
+
+// Files with this name, whose text and description `File` makes.
+template <class File, std::size_t n>
+void ExpectDescribed(int files, const std::array<int, n>& counts, const std::string& file_name) {
+  ExpectDescribed(files, counts,
+                  [&](const auto& choices, Random& random, const Folder& folder, const std::string& name,
+                      std::filesystem::path& file) {
+                    const File made(choices, random);
+                    file = folder.Write(name + "/" + file_name, made.text);
+                    return made.expected;
+                  });
 }
 
 }  // namespace sim::test

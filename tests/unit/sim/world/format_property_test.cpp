@@ -16,8 +16,8 @@
 namespace sim::test {
 namespace {
 
-// line end, normals and texture coordinates, colours (none, vertices 0 ... 255, vertices 0 ... 1, faces 0 ... 255, faces
-// 0 ... 1), alpha, counts beside the header's word, comments, sides, number format
+// line end, normals and texture coordinates, colours (none, vertices 0 ... 255, vertices 0 ... 1, faces 0 ... 255,
+// faces 0 ... 1), alpha, counts beside the header's word, comments, sides, number format
 constexpr std::array kOffCounts = {2, 4, 5, 2, 2, 2, 3, 3};
 
 struct OffFile {
@@ -101,7 +101,7 @@ constexpr std::array<std::pair<const char*, double>, 6> kUnits = {{{"millimeter"
 constexpr std::array kThreeMfCounts = {7, 2, 2, 6, 2, 2, 2, 2, 3};
 
 struct ThreeMfFile {
-  std::string bytes;
+  std::string text;
   Expected expected;
 
   ThreeMfFile(const std::array<int, kThreeMfCounts.size()>& c, Random& random) {
@@ -202,7 +202,7 @@ struct ThreeMfFile {
          "<Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" "
          "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>"}};
     if (picture) files["3D/Textures/a.png"] = EncodeColor(".png", 10, 20, 30);
-    bytes = ZipOf(files, c[1] == 1);
+    text = ZipOf(files, c[1] == 1);
   }
 };
 
@@ -323,34 +323,14 @@ struct ColladaFile {
   }
 };
 
-TEST(FormatProperty, RandomOffFilesAreWhatTheyDescribe) {
-  ExpectDescribed(600, kOffCounts,
-                  [](const auto& choices, Random& random, const Folder& folder, const std::string& name,
-                     std::filesystem::path& file) {
-                    const OffFile made(choices, random);
-                    file = folder.Write(name + "/m.off", made.text);
-                    return made.expected;
-                  });
-}
+TEST(FormatProperty, RandomOffFilesAreWhatTheyDescribe) { ExpectDescribed<OffFile>(600, kOffCounts, "m.off"); }
 
 TEST(FormatProperty, RandomThreeMfFilesAreWhatTheyDescribe) {
-  ExpectDescribed(600, kThreeMfCounts,
-                  [](const auto& choices, Random& random, const Folder& folder, const std::string& name,
-                     std::filesystem::path& file) {
-                    const ThreeMfFile made(choices, random);
-                    file = folder.Write(name + "/m.3mf", made.bytes);
-                    return made.expected;
-                  });
+  ExpectDescribed<ThreeMfFile>(600, kThreeMfCounts, "m.3mf");
 }
 
 TEST(FormatProperty, RandomColladaFilesAreWhatTheyDescribe) {
-  ExpectDescribed(200, kColladaCounts,
-                  [](const auto& choices, Random& random, const Folder& folder, const std::string& name,
-                     std::filesystem::path& file) {
-                    const ColladaFile made(choices, random);
-                    file = folder.Write(name + "/m.dae", made.text);
-                    return made.expected;
-                  });
+  ExpectDescribed<ColladaFile>(200, kColladaCounts, "m.dae");
 }
 
 }  // namespace

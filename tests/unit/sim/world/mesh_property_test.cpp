@@ -204,15 +204,7 @@ TEST(MeshProperty, RandomObjFilesAreWhatTheyDescribe) {
                   });
 }
 
-TEST(MeshProperty, RandomPlyFilesAreWhatTheyDescribe) {
-  ExpectDescribed(600, kPlyCounts,
-                  [](const auto& choices, Random& random, const Folder& folder, const std::string& name,
-                     std::filesystem::path& file) {
-                    const PlyFile made(choices, random);
-                    file = folder.Write(name + "/m.ply", made.text);
-                    return made.expected;
-                  });
-}
+TEST(MeshProperty, RandomPlyFilesAreWhatTheyDescribe) { ExpectDescribed<PlyFile>(600, kPlyCounts, "m.ply"); }
 
 }  // namespace
 }  // namespace sim::test
