@@ -18,7 +18,6 @@
 
 #include "sim/world/fbx_text.h"
 #include "sim/world/mesh_readers.h"
-#include "sim/world/texture.h"
 #include "sim/world/texture_file.h"
 #include "sim/world/xml_text.h"
 #include "tools/base/files.h"
@@ -65,7 +64,6 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
     files_.Opened(file, stream->FileSize());
     if (LowerExtension(file) == ".dae") return Rewritten(file, ColladaForAssimp);
     if (LowerExtension(file) == ".x3d") return Rewritten(file, X3dForAssimp);
-    if (LowerExtension(file) == ".stl" && IsOfMagics(*stream)) return MagicsStl(file);
     return new BoundedStream(std::move(stream));  // Close() deletes it
   }
 
@@ -73,23 +71,6 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
   Assimp::IOStream* Rewritten(const fs::path& file, std::string rewrite(std::string_view, std::vector<std::string>&)) {
     warnings_.clear();  // assimp opens the file several times
     return Memory(rewrite(base::ReadFile(file).value_or(""), warnings_));
-  }
-
-  static bool IsOfMagics(Assimp::IOStream& stream) {
-    std::string header(80, ' ');
-    stream.Read(header.data(), 1, header.size());
-    stream.Seek(0, aiOrigin_SET);
-    return !header.starts_with("solid") && header.find("COLOR=") != std::string::npos;
-  }
-
-  // Magics sets the highest bit of a facet's colour where it has the object's; assimp (5.2) takes it for one of its
-  // own.
-  static Assimp::IOStream* MagicsStl(const fs::path& file) {
-    constexpr std::size_t kHeader = 84, kFacet = 50;
-    std::string bytes = base::ReadFile(file).value_or("");
-    for (std::size_t at = kHeader + kFacet; at <= bytes.size(); at += kFacet)
-      bytes[at - 1] = static_cast<char>(bytes[at - 1] ^ '\x80');
-    return Memory(bytes);
   }
 
   static Assimp::IOStream* Memory(const std::string& text) {
@@ -281,9 +262,6 @@ class Converter {
       if (!is_found && !is_replaced && !has(base)) import_.warnings.push_back("a material without a colour is white");
       color = {diffuse.r, diffuse.g, diffuse.b, 1};
     }
-    const bool is_default = color.r == 0.6f && color.g == 0.6f && color.b == 0.6f;  // assimp's, of STL
-    if (extension_ == ".stl" && !is_default)
-      for (unsigned i = 0; i < 3; ++i) color[i] = static_cast<float>(SrgbToLinear(color[i]));
     out.base_color = {color.r, color.g, color.b, color.a};
     aiColor3D emission(0, 0, 0);
     in.Get(AI_MATKEY_COLOR_EMISSIVE, emission);

@@ -81,7 +81,8 @@ MeshImport Import(const fs::path& file, const std::vector<fs::path>& folders, bo
   const std::string extension = LowerExtension(file);
   const auto gltf = only_cameras ? ReadGltfCameras : ReadGltf;
   const std::map<std::string_view, void (*)(MeshFiles&, MeshImport&)> readers = {
-      {".obj", ReadObj}, {".ply", ReadPly}, {".off", ReadOff}, {".3mf", Read3mf}, {".gltf", gltf}, {".glb", gltf}};
+      {".obj", ReadObj}, {".ply", ReadPly}, {".off", ReadOff}, {".stl", ReadStl},
+      {".3mf", Read3mf}, {".gltf", gltf},   {".glb", gltf}};
   const auto read = readers.find(extension);
   std::string head(200, '\0');
   std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));

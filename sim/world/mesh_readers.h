@@ -24,6 +24,11 @@ void ReadPly(MeshFiles& files, MeshImport& import);
 // Source: Geomview manual, "OFF: Object File Format".
 void ReadOff(MeshFiles& files, MeshImport& import);
 
+// STL in text (several solids) and binary, with colours of VisCAM and Magics. What is in front is said by the order of
+// the corners; normals are not read.
+// Source: 3D Systems, "StereoLithography Interface Specification", 1989; Materialise Magics and VisCAM for colours.
+void ReadStl(MeshFiles& files, MeshImport& import);
+
 // 3MF in its unit: objects, components, build items, also of several model parts; base materials, colours and pictures
 // of triangles and their corners.
 // Source: 3MF Consortium, Core 1.3, Materials and Properties 1.2.1, Production 1.1.2; PKWARE, APPNOTE 6.3.9 (zip).

@@ -20,6 +20,7 @@ target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/ply_reader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/scene.cpp
   ${CMAKE_CURRENT_LIST_DIR}/sky.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/stl_reader.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture_cache.cpp
   ${CMAKE_CURRENT_LIST_DIR}/texture_file.cpp

@@ -1,4 +1,4 @@
-// Our readers of meshes, glTF, OBJ, PLY, OFF and 3MF, without the process around them: thousands of runs a second.
+// Our readers of meshes, glTF, OBJ, PLY, OFF, STL and 3MF, without the process around them: thousands of runs a second.
 #include <csignal>
 #include <new>
 #include <vector>
@@ -14,6 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto reader = extension == ".gltf" || extension == ".glb" ? sim::ReadGltf
                       : extension == ".ply"                       ? sim::ReadPly
                       : extension == ".off"                       ? sim::ReadOff
+                      : extension == ".stl"                       ? sim::ReadStl
                       : extension == ".3mf"                       ? sim::Read3mf
                                                                   : sim::ReadObj;
   sim::MeshImport import;

@@ -1,10 +1,12 @@
-// Random valid OFF, 3MF and COLLADA files, in all pairs of what their writers do differently, against their own
+// Random valid OFF, 3MF, COLLADA and STL files, in all pairs of what their writers do differently, against their own
 // description.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <libdeflate.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -323,6 +325,75 @@ struct ColladaFile {
   }
 };
 
+// form (text; text, "SOLID" and signs; binary; binary with "solid" in its header), normals (right, turned over, zero,
+// not a number), colours (none, VisCAM's, Magics', Magics' object) of binary forms, solids of text forms, line end, name
+constexpr std::array kStlCounts = {4, 4, 4, 2, 2, 2};
+
+struct StlFile {
+  std::string text;
+  Expected expected;
+
+  StlFile(const std::array<int, kStlCounts.size()>& c, Random& random) {
+    const bool binary = c[0] >= 2, magics = c[2] >= 2;
+    const std::string end = c[4] == 0 ? "\n" : "\r\n", name = c[5] == 1 ? " facet normal by hand" : "";
+    const auto word = [&](std::string of) {
+      if (c[0] == 1) std::ranges::transform(of, of.begin(), [](unsigned char l) { return std::toupper(l); });
+      return of;
+    };
+    const auto numbers = [&](const glm::dvec3& v) {
+      std::string words;
+      for (int i = 0; i < 3; ++i) {
+        const auto number = static_cast<float>(v[i]);
+        words += binary      ? std::string(reinterpret_cast<const char*>(&number), sizeof number)
+                 : c[0] == 1 ? fmt::format("  {:+.9E}", number)
+                             : fmt::format(" {:.9g}", number);
+      }
+      return words;
+    };
+    expected.has_colors = binary && c[2] > 0;
+    std::string facets;
+    for (int f = 0; f < 5; ++f) {
+      Face face = random.Polygon(3, true);
+      const glm::dvec3 of_object(255, 0, 51), coded = of_object / 255.0;
+      std::size_t attribute = 0;
+      if (binary && c[2] > 0) {
+        const bool has_own = c[2] < 3 || f % 2 == 0;
+        std::array<std::size_t, 3> code{};  // red, green, blue
+        for (int i = 0; i < 3; ++i) code[static_cast<std::size_t>(i)] = static_cast<std::size_t>(random.Whole(32));
+        for (Corner& corner : face.corners)
+          corner.color = has_own ? glm::dvec3(code[0], code[1], code[2]) / 31.0 : coded;
+        attribute = magics ? (has_own ? 0 : 0x8000) | code[0] | code[1] << 5 | code[2] << 10
+                           : 0x8000 | code[2] | code[1] << 5 | code[0] << 10;
+      }
+      const std::vector<Corner>& corners = face.corners;
+      const glm::dvec3 n = glm::normalize(
+          glm::cross(corners[1].position - corners[0].position, corners[2].position - corners[0].position));
+      const std::string normal =
+          c[1] == 3 && !binary ? " nan nan nan"
+                               : numbers(c[1] == 3 ? glm::dvec3(std::nan("")) : (c[1] == 0 ? 1.0 : c[1] - 2.0) * n);
+      if (binary) {
+        facets += normal;
+        for (const Corner& corner : corners) facets += numbers(corner.position);
+        facets += LittleEndian(attribute, 2);
+      } else {
+        facets += word("  facet normal") + normal + end + word("    outer loop") + end;
+        for (const Corner& corner : corners) facets += word("      vertex") + numbers(corner.position) + end;
+        facets += word("    endloop") + end + word("  endfacet") + end;
+        if (f == 2 && c[3] == 1) facets += word("endsolid") + name + end + word("solid") + " second" + end;
+      }
+      expected.faces.push_back(face);
+    }
+    if (binary) {
+      text = c[0] == 3 ? "solid" + name : "made by hand";
+      if (magics) text = (c[0] == 3 ? " solid, " : "") + std::string("COLOR=\xff\0\x33\xff", 10);
+      text.resize(80, c[5] == 1 ? ' ' : '\0');
+      text += LittleEndian(5, 4) + facets;
+    } else {
+      text = word("solid") + name + end + facets + word("endsolid") + name + end;
+    }
+  }
+};
+
 TEST(FormatProperty, RandomOffFilesAreWhatTheyDescribe) { ExpectDescribed<OffFile>(600, kOffCounts, "m.off"); }
 
 TEST(FormatProperty, RandomThreeMfFilesAreWhatTheyDescribe) {
@@ -332,6 +403,8 @@ TEST(FormatProperty, RandomThreeMfFilesAreWhatTheyDescribe) {
 TEST(FormatProperty, RandomColladaFilesAreWhatTheyDescribe) {
   ExpectDescribed<ColladaFile>(200, kColladaCounts, "m.dae");
 }
+
+TEST(FormatProperty, RandomStlFilesAreWhatTheyDescribe) { ExpectDescribed<StlFile>(600, kStlCounts, "m.stl"); }
 
 }  // namespace
 }  // namespace sim::test

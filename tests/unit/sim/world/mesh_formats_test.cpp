@@ -454,45 +454,20 @@ TEST(MeshFormats, SkinsStandWhereTheirJointsAre) {
               testing::UnorderedElementsAre(glm::vec3(-1, 3, 2), glm::vec3(1, 3, 2), glm::vec3(-1, 5, 2)));
 }
 
-// The highest bit of a facet's colour in an STL of Magics: 1 where it has the object's.
-TEST(MeshFormats, StlColoursOfMagics) {
-  std::string text = std::string("COLOR=") + "\xff" + std::string(2, '\0') + "\xff";
-  text.resize(80);
-  Append<std::uint32_t>(text, {2});
-  for (const int attribute : {0x8000, 0x7c00}) {  // the object's red; blue of its own
-    Append<float>(text, {0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, attribute == 0x8000 ? 0.0f : 1.0f});
-    text += static_cast<char>(attribute & 255);
-    text += static_cast<char>(attribute >> 8);
-  }
+// A solid without facets, corners on one line and a missing normal; a file that breaks off.
+TEST(MeshFormats, StlByHand) {
   const Folder folder;
-  const Scene scene = LoadScene(WorldOf(folder.Write("m.stl", text)));
-  std::vector<glm::vec3> colors;
-  for (const Mesh& mesh : scene.meshes)
-    for (const auto& color : mesh.colors) colors.emplace_back(color);
-  EXPECT_THAT(colors, testing::Contains(glm::vec3(1, 0, 0)));
-  EXPECT_THAT(colors, testing::Contains(glm::vec3(0, 0, 1)));
-}
-
-// Two facets with a common edge, red and green: no corner has the colour of the other facet.
-TEST(MeshFormats, StlColoursOfFacets) {
-  std::string text(80, ' ');
-  Append<std::uint32_t>(text, {2});
-  for (const int attribute : {0x8000 | 31 << 10, 0x8000 | 31 << 5}) {
-    const float x = attribute == (0x8000 | 31 << 10) ? 1.0f : 0.0f;
-    Append<float>(text, {0, 0, 1, 0, 0, 0, x, 1 - x, 0, 1, 1, 0});
-    text += static_cast<char>(attribute & 255);
-    text += static_cast<char>(attribute >> 8);
-  }
-  const Folder folder;
-  const Scene scene = LoadScene(WorldOf(folder.Write("m.stl", text)));
-  std::vector<glm::vec3> colors;
-  for (const Mesh& mesh : scene.meshes) {
-    for (const glm::uvec3& t : mesh.triangles) {
-      EXPECT_TRUE(mesh.colors[t.x] == mesh.colors[t.y] && mesh.colors[t.y] == mesh.colors[t.z]);
-      colors.emplace_back(mesh.colors[t.x]);
-    }
-  }
-  EXPECT_THAT(colors, testing::UnorderedElementsAre(glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)));
+  const auto file = [&](const std::string& end) {
+    return folder.Write("m.stl",
+                        "solid none\rendsolid\rsolid b\rfacet outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 "
+                        "endloop endfacet\r" +
+                            end);
+  };
+  const Scene scene = LoadScene(WorldOf(file("endsolid b\r")));
+  ASSERT_THAT(scene.meshes, SizeIs(1));
+  EXPECT_EQ(scene.meshes[0].name, "b");
+  EXPECT_THAT(scene.meshes[0].triangles, SizeIs(1));
+  EXPECT_THAT(ProblemTextOf([&] { LoadScene(WorldOf(file(""))); }), HasSubstr("ends too early"));
 }
 
 TEST(MeshFormats, ColladaWarnings) {
