@@ -52,7 +52,7 @@ class BoundedStream : public Assimp::IOStream {
 // File access of importers, which silently skip side files that cannot be opened.
 class ImporterFiles : public Assimp::DefaultIOSystem {
  public:
-  ImporterFiles(MeshFiles& files, std::vector<std::string>& warnings) : files_(files), warnings_(warnings) {}
+  ImporterFiles(MeshFiles& files, MeshImport& import) : files_(files), import_(import) {}
   bool Exists(const char* file) const override { return files_.MayOpen(file); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     std::unique_ptr<Assimp::IOStream> stream(mode[0] == 'r' && files_.MayOpen(file) ? DefaultIOSystem::Open(file, mode)
@@ -69,8 +69,13 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
 
  private:
   Assimp::IOStream* Rewritten(const fs::path& file, std::string rewrite(std::string_view, std::vector<std::string>&)) {
-    warnings_.clear();  // assimp opens the file several times
-    return Memory(rewrite(base::ReadFile(file).value_or(""), warnings_));
+    import_.warnings.clear();  // assimp opens the file several times
+    try {
+      return Memory(rewrite(base::ReadFile(file).value_or(""), import_.warnings));
+    } catch (const std::runtime_error& error) {
+      import_.problem = std::string("cannot be read: ") + error.what();
+      return nullptr;
+    }
   }
 
   static Assimp::IOStream* Memory(const std::string& text) {
@@ -80,7 +85,7 @@ class ImporterFiles : public Assimp::DefaultIOSystem {
   }
 
   MeshFiles& files_;
-  std::vector<std::string>& warnings_;
+  MeshImport& import_;
 };
 
 // FBX states its unit in centimetres and its axes; assimp (5.2) converts neither.
@@ -329,7 +334,8 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
     import.problem = "has a <skew>, which is not read: export it with <matrix>, or as .glb";
   if (!import.problem.empty()) return;
   Assimp::Importer importer;
-  importer.SetIOHandler(new ImporterFiles(files, import.warnings));  // the importer owns it
+  importer.SetIOHandler(new ImporterFiles(files, import));  // the importer owns it
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // which would stand for joints
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(files.mesh().string(), aiProcess_ValidateDataStructure);
   if (scene != nullptr) import.problem = CountProblem(*scene);  // too large a scene is not processed
@@ -341,7 +347,7 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
                                          (has_colors ? 0U : unsigned{aiProcess_JoinIdenticalVertices}));
     if (scene != nullptr) import.problem = CountProblem(*scene);
   }
-  if (scene == nullptr) {
+  if (scene == nullptr && import.problem.empty()) {
     const std::string reason = importer.GetErrorString();
     const bool only_lines = reason.find("No meshes remaining") != std::string::npos;  // the importer's message
     const bool too_much = reason.find("bad_alloc") != std::string::npos;              // the library's

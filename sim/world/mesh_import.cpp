@@ -21,6 +21,7 @@
 #include "sim/world/texture_file.h"
 #include "tools/base/child_process.h"
 #include "tools/base/files.h"
+#include "tools/base/text.h"
 
 // The address and the thread sanitizer reserve terabytes.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
@@ -87,6 +88,7 @@ MeshImport Import(const fs::path& file, const std::vector<fs::path>& folders, bo
   std::string head(200, '\0');
   std::ifstream(file, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size()));
   import.problem = StandInProblem(base::AsBytes(head));
+  if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff")) import.problem = base::TextProblem(head);
   if (!import.problem.empty()) return import;
   try {
     (read == readers.end() ? ReadByAssimp : read->second)(files, import);

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -213,12 +214,146 @@ std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& wa
   return out;
 }
 
+namespace {
+
+std::vector<std::string_view> NumbersOf(std::string_view list) {
+  constexpr std::string_view kBetween = " \t\r\n,";
+  std::vector<std::string_view> all;
+  for (std::size_t at = list.find_first_not_of(kBetween); at < list.size();) {
+    const std::size_t end = std::min(list.find_first_of(kBetween, at), list.size());
+    all.push_back(list.substr(at, end - at));
+    at = list.find_first_not_of(kBetween, end);
+  }
+  return all;
+}
+
+constexpr std::array<std::string_view, 5> kLists = {"<Coordinate", "<TextureCoordinate", "<Normal", "<Color",
+                                                    "<ColorRGBA"};
+
+// The tag of a list that is defined elsewhere (USE), else this one.
+std::string_view Defined(std::string_view text, std::string_view tag, std::string_view node) {
+  std::string_view from = tag;
+  ForEachTag(Attribute(tag, "USE").empty() ? "" : text, [&](std::string_view other) {
+    if (IsTag(other, node) && Attribute(other, "DEF") == Attribute(tag, "USE")) from = other;
+  });
+  return from;
+}
+
+// A set of faces or triangles (its tag, and what is in it) as an IndexedFaceSet where each corner has a position of its
+// own: assimp knows one normal, texture coordinate and colour for each position, and no faces that are turned about.
+std::string WithOwnCorners(std::string_view text, std::string_view tag, std::string_view inside) {
+  struct List {
+    std::string_view node, values, index, per_vertex;
+    std::size_t width;
+    std::vector<std::string_view> all{};
+  };
+  List lists[] = {{kLists[0], "point", "coordIndex", "", 3},
+                  {kLists[1], "point", "texCoordIndex", "", 2},
+                  {kLists[2], "vector", "normalIndex", "normalPerVertex", 3},
+                  {kLists[3], "color", "colorIndex", "colorPerVertex", 3},
+                  {kLists[4], "color", "colorIndex", "colorPerVertex", 4}};
+  ForEachTag(inside, [&](std::string_view child) {
+    for (List& list : lists) {
+      if (!IsTag(child, list.node)) continue;
+      list.all = NumbersOf(Attribute(Defined(text, child, list.node), std::string(list.values)));
+    }
+  });
+  const bool is_triangles = !IsTag(tag, "<IndexedFaceSet");
+  std::vector<double> corners;  // of faces, each with a -1 at its end
+  const auto append = [&](double corner) {
+    if (is_triangles && corners.size() % 4 == 3) corners.push_back(-1);
+    corners.push_back(corner);
+  };
+  const auto number = [](std::string_view word) { return base::ParseNumber(word).value_or(-2); };
+  for (const std::string_view word : NumbersOf(Attribute(tag, is_triangles ? "index" : "coordIndex")))
+    append(number(word));
+  for (std::size_t i = 0; IsTag(tag, "<TriangleSet") && i < lists[0].all.size() / 3; ++i)
+    append(static_cast<double>(i));
+  std::vector<std::size_t> order, face;  // of the corners: places in the list of indices, and their faces
+  const std::string_view name = Attribute(tag, "DEF");
+  std::string out = "<IndexedFaceSet " + (name.empty() ? "" : "DEF='" + std::string(name) + "' ") + "coordIndex='";
+  for (std::size_t i = 0, first = 0, faces = 0; i <= corners.size(); ++i) {
+    if (i < corners.size() && corners[i] != -1) continue;
+    for (std::size_t k = first; k < i; ++k) {
+      out += std::to_string(order.size()) + " ";
+      order.push_back(Attribute(tag, "ccw") == "false" ? first + i - 1 - k : k);
+      face.push_back(faces);
+    }
+    if (i > first) out += "-1 ", ++faces;
+    first = i + 1;
+  }
+  out += "'>";
+  for (const List& list : lists) {
+    if (list.all.empty()) continue;
+    const std::vector<std::string_view> own = NumbersOf(Attribute(tag, std::string(list.index)));
+    const bool of_face =
+        !is_triangles && !list.per_vertex.empty() && Attribute(tag, std::string(list.per_vertex)) == "false";
+    out += std::string(list.node) + " " + std::string(list.values) + "='";
+    for (std::size_t corner = 0; corner < order.size(); ++corner) {
+      const std::size_t place = of_face ? face[corner] : order[corner];
+      const double at = is_triangles || own.empty() ? (of_face ? static_cast<double>(place) : corners[place])
+                        : place < own.size()        ? number(own[place])
+                                                    : -1;
+      if (!(at >= 0 && at < static_cast<double>(list.all.size() / list.width)))
+        throw std::runtime_error("a face has an index that is not in its list (" + std::string(list.node.substr(1)) +
+                                 ")");
+      for (std::size_t k = 0; k < list.width; ++k)
+        (out += list.all[static_cast<std::size_t>(at) * list.width + k]) += " ";
+    }
+    out += "'/>";
+  }
+  return out + "</IndexedFaceSet";
+}
+
+}  // namespace
+
 std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnings) {
   std::string out;
   std::size_t done = 0;
-  bool has_face_colors = false, has_copies = false, has_files = false, has_textures = false;
+  bool has_copies = false, has_files = false, has_textures = false, has_turns = false;
+  std::set<std::string> left_out;
   ForEachTag(text, [&](std::string_view tag) {
-    has_face_colors = has_face_colors || Attribute(tag, "colorPerVertex") == "false";
+    const auto begin_of_tag = static_cast<std::size_t>(tag.data() - text.data()),
+               end_of_tag = begin_of_tag + tag.size() + 1;
+    // On an IndexedLineSet assimp does not end.
+    for (const std::string node : {"IndexedFaceSet", "IndexedTriangleSet", "TriangleSet", "IndexedLineSet"}) {
+      if (!IsTag(tag, "<" + node) || tag.ends_with('/') || begin_of_tag < done) continue;
+      const std::size_t end = text.find("</" + node, end_of_tag);
+      if (end == std::string_view::npos) continue;
+      out.append(text.substr(done, begin_of_tag - done));
+      if (node != "IndexedLineSet") out.append(WithOwnCorners(text, tag, text.substr(end_of_tag, end - end_of_tag)));
+      done = end + 2 + node.size() + (node == "IndexedLineSet" ? 1 : 0);
+    }
+    for (const std::string_view node : kLists) {  // of other sets: the definition may have been replaced
+      const std::string_view from = IsTag(tag, node) && begin_of_tag >= done ? Defined(text, tag, node) : tag;
+      if (from == tag) continue;
+      std::string copy(from.substr(0, from.size() - (from.ends_with('/') ? 1 : 0)));
+      copy.replace(copy.find("DEF"), 3, "id");
+      out.append(text.substr(done, begin_of_tag - done));
+      out.append(copy + (tag.ends_with('/') ? "/" : ""));
+      done = begin_of_tag + tag.size();
+    }
+    const auto is = [&](const std::string& node) { return IsTag(tag, node) || tag == node; };
+    for (const auto& [node, known] : {std::pair<std::string, const char*>{"Anchor", "Group"},
+                                      {"Billboard", "Group"},
+                                      {"Collision", "Group"},
+                                      {"CADLayer", "Group"},
+                                      {"CADAssembly", "Group"},
+                                      {"CADFace", "Group"},
+                                      {"CADPart", "Transform"}}) {
+      if ((!is("<" + node) && tag != "</" + node) || begin_of_tag < done) continue;
+      out.append(text.substr(done, text.find(node, begin_of_tag) - done));
+      out.append(known);
+      done = text.find(node, begin_of_tag) + node.size();
+    }
+    for (const std::string node :
+         {"LOD", "Text", "ProtoInstance", "Layer", "LayerSet", "LayoutLayer", "GeoLocation", "GeoTransform", "GeoLOD",
+          "GeoElevationGrid", "HAnimHumanoid", "QuadSet", "IndexedQuadSet", "NurbsPatchSurface", "NurbsTrimmedSurface",
+          "NurbsSweptSurface", "ParticleSystem"})
+      if (is("<" + node)) left_out.insert(node);
+    has_turns = has_turns || (IsTag(tag, "<TextureTransform") &&
+                              (!Attribute(tag, "rotation").empty() || !Attribute(tag, "center").empty() ||
+                               (!Attribute(tag, "scale").empty() && !Attribute(tag, "translation").empty())));
     has_files = has_files || IsTag(tag, "<Inline");
     for (const std::string_view node : {"<Shape", "<Transform", "<Group", "<Switch"})
       has_copies = has_copies || (IsTag(tag, node) && !Attribute(tag, "USE").empty());
@@ -234,14 +369,18 @@ std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnin
       const auto at = static_cast<std::size_t>(texts.data() - text.data());
       if (at < done) continue;
       out.append(text.substr(done, at - done));
-      out.append(first.substr(begin, first.find('"', begin) - begin));
+      for (const char c : first.substr(begin, first.find('"', begin) - begin))
+        out += c == ' ' ? "%20" : std::string(1, c);
       done = at + texts.size();
     }
   });
-  if (has_face_colors)
-    warnings.push_back("colours of faces (colorPerVertex false) run into each other at their corners");
   if (has_copies) warnings.push_back("nodes that stand in several places (USE) are drawn in the first alone");
   if (has_textures) warnings.push_back("textures of other kinds than ImageTexture are left out");
+  if (has_turns)
+    warnings.push_back("a TextureTransform that turns, or scales and moves, a picture is not applied as it should be");
+  if (!left_out.empty())
+    warnings.push_back("nodes that are not read are left out, with all in them: " +
+                       base::Join({left_out.begin(), left_out.end()}, ", "));
   if (has_files) warnings.push_back("files that it includes (Inline) are not read");
   return out + std::string(text.substr(done));
 }

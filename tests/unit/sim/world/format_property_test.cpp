@@ -1,4 +1,4 @@
-// Random valid OFF, 3MF, COLLADA and STL files, in all pairs of what their writers do differently, against their own
+// Random valid OFF, 3MF, COLLADA, STL and X3D files, in all pairs of what their writers do differently, against their own
 // description.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -394,6 +394,81 @@ struct StlFile {
   }
 };
 
+// node (IndexedFaceSet, IndexedTriangleSet, TriangleSet), indices (the coordinates', each list's own, of faces), clockwise
+// faces, normals, texture coordinates, colours (none, without and with alpha), transform (none, one, two), separators,
+// list of coordinates elsewhere (USE), last -1 missing, sides
+constexpr std::array kX3dCounts = {3, 3, 2, 2, 2, 3, 3, 2, 2, 2, 3};
+
+struct X3dFile {
+  std::string text;
+  Expected expected;
+
+  X3dFile(const std::array<int, kX3dCounts.size()>& c, Random& random) {
+    const bool set = c[0] == 0, apart = set && c[1] == 1, of_faces = set && c[1] == 2, turned = set && c[2] == 1,
+               normal = c[3] == 1, uv = c[4] == 1, color = c[5] > 0;
+    const std::string between = c[7] == 0 ? " " : ", ";
+    expected.has_normals = normal, expected.has_uvs = uv, expected.has_colors = color && !uv;
+    if (!color && !uv) expected.base_colors = {glm::dvec3(0.25, 0.5, 0.75)};
+    const int sides = set ? 3 + c[10] : 3, all = 5 * sides;
+    std::string points, normals, uvs, colors, corners, other_corners;
+    for (int f = 0; f < 5; ++f) {
+      Face face = random.Polygon(sides, of_faces);
+      std::vector<int> order;
+      for (int i = 0; i < sides; ++i) {
+        Corner& corner = face.corners[static_cast<std::size_t>(i)];
+        if (of_faces) corner.normal = face.corners[0].normal;
+        glm::dvec3 x = corner.position, n = corner.normal;
+        for (int turn = 0; turn < c[6]; ++turn) {
+          x = (x - glm::dvec3(1, 2, 3)) / 2.0;
+          x = glm::dvec3(x.y, -x.x, x.z), n = glm::dvec3(n.y, -n.x, n.z);
+        }
+        const auto add = [&](std::string& list, const std::string& words) {
+          list = apart && &list != &points ? words + between + list : list + words + between;
+        };
+        add(points, fmt::format("{:.9g} {:.9g} {:.9g}", x.x, x.y, x.z));
+        add(uvs, fmt::format("{:.9g} {:.9g}", corner.uv.x, corner.uv.y));
+        if (!of_faces || i == 0) {
+          add(normals, fmt::format("{:.9g} {:.9g} {:.9g}", n.x, n.y, n.z));
+          add(colors, fmt::format("{:.9g} {:.9g} {:.9g}{}", corner.color.r, corner.color.g, corner.color.b,
+                                  c[5] == 2 ? " 0.5" : ""));
+        }
+        order.push_back(turned ? f * sides + sides - 1 - i : f * sides + i);
+      }
+      for (const int corner : order) {
+        corners += std::to_string(corner) + between;
+        other_corners += std::to_string(all - 1 - corner) + between;
+      }
+      if (set && (f < 4 || c[9] == 0)) corners += "-1" + between, other_corners += "-1" + between;
+      expected.faces.push_back(face);
+    }
+    const std::string node = std::array{"IndexedFaceSet", "IndexedTriangleSet",
+                                        "TriangleSet"}[static_cast<std::size_t>(c[0])],
+                      points_node = "<Coordinate DEF='of all' point='" + points + "'/>";
+    std::string shape = "<Shape><Appearance><Material diffuseColor='0.25 0.5 0.75'/>";
+    shape +=
+        (uv ? "<ImageTexture url='\"a picture.png\"'/>" : "") + std::string("</Appearance><") + node + " solid='false'";
+    if (c[0] < 2) shape += (set ? " coordIndex='" : " index='") + corners + "'";
+    if (apart) {
+      for (const auto& [has, name] : {std::pair(normal, "normal"), {uv, "texCoord"}, {color, "color"}})
+        if (has) shape += fmt::format(" {}Index='{}'", name, other_corners);
+    }
+    if (turned) shape += " ccw='false'";
+    if (of_faces) shape += " normalPerVertex=\"false\" colorPerVertex=\"false\"";
+    shape += ">" + (c[8] == 1 && set ? "<Coordinate USE='of all'/>" : points_node);
+    if (normal) shape += "<Normal vector='" + normals + "'/>";
+    if (uv) shape += "<TextureCoordinate point='" + uvs + "'/>";
+    if (color) shape += (c[5] == 1 ? "<Color color='" : "<ColorRGBA color='") + colors + "'/>";
+    shape += "</" + node + "></Shape>";
+    for (int turn = 0; turn < c[6]; ++turn)
+      shape = "<Transform translation='1 2 3' rotation='0 0 1 1.5707963267948966' scale='2 2 2'><Collision>" + shape +
+              "</Collision></Transform>";
+    if (c[8] == 1 && set)
+      shape = "<Shape><IndexedLineSet coordIndex='0 1 -1'>" + points_node + "</IndexedLineSet></Shape>" + shape;
+    text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<X3D profile='Interchange' version='3.3'><Scene>" + shape +
+           "</Scene></X3D>";
+  }
+};
+
 TEST(FormatProperty, RandomOffFilesAreWhatTheyDescribe) { ExpectDescribed<OffFile>(600, kOffCounts, "m.off"); }
 
 TEST(FormatProperty, RandomThreeMfFilesAreWhatTheyDescribe) {
@@ -405,6 +480,8 @@ TEST(FormatProperty, RandomColladaFilesAreWhatTheyDescribe) {
 }
 
 TEST(FormatProperty, RandomStlFilesAreWhatTheyDescribe) { ExpectDescribed<StlFile>(600, kStlCounts, "m.stl"); }
+
+TEST(FormatProperty, RandomX3dFilesAreWhatTheyDescribe) { ExpectDescribed<X3dFile>(200, kX3dCounts, "m.x3d"); }
 
 }  // namespace
 }  // namespace sim::test

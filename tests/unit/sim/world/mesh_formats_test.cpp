@@ -655,14 +655,47 @@ TEST(MeshFormats, X3dWarnings) {
     EXPECT_EQ(X3dForAssimp(text, all), text);
     return all;
   };
-  EXPECT_THAT(warnings("<IndexedFaceSet colorPerVertex='true'/><Coordinate USE='c'/>"), IsEmpty());
-  EXPECT_THAT(warnings("<IndexedFaceSet colorPerVertex='false'/>"), ElementsAre(HasSubstr("colours of faces")));
+  EXPECT_THAT(warnings("<IndexedFaceSet USE='a'/><Coordinate USE='c'/>"), IsEmpty());
+  EXPECT_THAT(warnings("<LOD><Shape/></LOD><Text string='a'/>"), ElementsAre(HasSubstr("all in them: LOD, Text")));
+  EXPECT_THAT(warnings("<TextureTransform rotation='1'/>"), ElementsAre(HasSubstr("turns")));
+  EXPECT_THAT(warnings("<TextureTransform scale='2 2'/>"), IsEmpty());
   EXPECT_THAT(warnings("<Shape DEF='a'/><Shape USE='a'/>"), ElementsAre(HasSubstr("several places (USE)")));
   EXPECT_THAT(warnings("<Inline url='b.x3d'/>"), ElementsAre(HasSubstr("(Inline) are not read")));
   EXPECT_THAT(warnings("<MultiTexture><PixelTexture image='0 0 0'/>"), ElementsAre(HasSubstr("than ImageTexture")));
   std::vector<std::string> none;
   EXPECT_EQ(X3dForAssimp("<MetadataString value='\"a\" \"b\"' name='n'/>", none),
             "<MetadataString value='a' name='n'/>");
+}
+
+// Lists that a fan shares with a set of faces, whose corners get positions of their own; an index without a position.
+TEST(MeshFormats, X3dSharedLists) {
+  const Folder folder;
+  const auto file = [&](const std::string& index) {
+    return WorldOf(
+        folder.Write("m.x3d", "<X3D><Scene><Shape><IndexedFaceSet DEF='f' coordIndex='" + index +
+                                  "'><Coordinate DEF='c' point='0 0 0 1 0 0 1 1 0 0 1 0'/></IndexedFaceSet>"
+                                  "</Shape><Shape><IndexedTriangleFanSet index='0 1 2 3 -1'><Coordinate USE='c'/>"
+                                  "</IndexedTriangleFanSet></Shape><Transform translation='0 0 1'><Shape>"
+                                  "<IndexedFaceSet USE='f'/></Shape></Transform></Scene></X3D>"));
+  };
+  std::vector<std::size_t> triangles;
+  for (const Mesh& mesh : LoadScene(file("0 1 2 3")).meshes) triangles.push_back(mesh.triangles.size());
+  EXPECT_THAT(triangles, ElementsAre(2u, 2u, 2u));
+  EXPECT_THAT(ProblemTextOf([&] { LoadScene(file("0 1 4 -1")); }), HasSubstr("not in its list (Coordinate)"));
+}
+
+// Nodes of a scene that has lights, cameras or joints alone: nothing stands for them. XML in UTF-16.
+TEST(MeshFormats, NoMeshStandsForJointsAndUtf16IsRefused) {
+  const Folder folder;
+  const auto problem = [&](const std::string& text) {
+    return ProblemTextOf([&] { LoadScene(WorldOf(folder.Write("m.dae", text))); });
+  };
+  EXPECT_THAT(
+      problem("<COLLADA version='1.4.1'><library_visual_scenes><visual_scene id='s'><node id='a'><translate>0 1 0"
+              "</translate><node id='b'><translate>0 1 0</translate></node></node></visual_scene>"
+              "</library_visual_scenes><scene><instance_visual_scene url='#s'/></scene></COLLADA>"),
+      HasSubstr("has no triangles"));
+  EXPECT_THAT(problem(std::string("\xff\xfe<\0", 4)), HasSubstr("UTF-16"));
 }
 
 TEST(MeshFormats, FilesOfNoMeshAndUnknownContentAreRefusedWithARemedy) {
