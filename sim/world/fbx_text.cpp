@@ -68,6 +68,20 @@ std::vector<std::string> FbxWarnings(std::string_view file) {
   if (file.find(is_binary ? std::string_view("S\x0e\0\0\0LayeredTexture", 19) : "LayeredTexture:") !=
       std::string_view::npos)
     warnings.push_back("layered textures may be left out: bake them into one");
+  for (const std::string_view name : {"LayerElementNormal", "LayerElementUV", "LayerElementColor"}) {
+    bool of_faces = false;
+    for (std::size_t at = file.find(name, 1); at != std::string_view::npos; at = file.find(name, at + 1)) {
+      const bool is_node =
+          is_binary ? file[at - 1] == static_cast<char>(name.size()) : file.substr(at + name.size()).starts_with(':');
+      const std::size_t key = file.find("MappingInformationType", at);
+      if (!is_node || key == std::string_view::npos) continue;
+      const std::string_view mapping = file.substr(key, 45);
+      of_faces = of_faces || mapping.find("AllSame") != std::string_view::npos ||
+                 (mapping.find("ByPolygon") != std::string_view::npos &&
+                  mapping.find("ByPolygonVertex") == std::string_view::npos);
+    }
+    if (of_faces) warnings.push_back("a " + std::string(name) + " of whole faces (ByPolygon, AllSame) is left out");
+  }
   return warnings;
 }
 

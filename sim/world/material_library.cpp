@@ -166,6 +166,7 @@ std::vector<std::string> ReadMaterialLibrary(std::string_view text, const std::s
     if (key == "map_d") m->opacity_map = ReadMap(rest);
     if (key == "map_ke") m->emission_map = ReadMap(rest);
     if (key == "bump" || key == "map_bump") m->has_bumps = 1;
+    if (key == "map_pr" || key == "map_pm") m->gloss_map = ReadMap(rest);
     if (key == "norm") m->normal_map = ReadMap(rest);
   });
   return left_out;

@@ -1,5 +1,5 @@
-// Random valid OFF, 3MF, COLLADA, STL and X3D files, in all pairs of what their writers do differently, against their own
-// description.
+// Random valid OFF, 3MF, COLLADA, STL, X3D and FBX files, in all pairs of what their writers do differently, against
+// their own description.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <libdeflate.h>
@@ -325,8 +325,8 @@ struct ColladaFile {
   }
 };
 
-// form (text; text, "SOLID" and signs; binary; binary with "solid" in its header), normals (right, turned over, zero,
-// not a number), colours (none, VisCAM's, Magics', Magics' object) of binary forms, solids of text forms, line end, name
+// form (text; text, "SOLID" and signs; binary; binary with "solid" in its header), normals (right, turned over, zero, not
+// a number), colours (none, VisCAM's, Magics', Magics' object) of binary forms, solids of text forms, line end, name
 constexpr std::array kStlCounts = {4, 4, 4, 2, 2, 2};
 
 struct StlFile {
@@ -394,9 +394,9 @@ struct StlFile {
   }
 };
 
-// node (IndexedFaceSet, IndexedTriangleSet, TriangleSet), indices (the coordinates', each list's own, of faces), clockwise
-// faces, normals, texture coordinates, colours (none, without and with alpha), transform (none, one, two), separators,
-// list of coordinates elsewhere (USE), last -1 missing, sides
+// node (IndexedFaceSet, IndexedTriangleSet, TriangleSet), indices (the coordinates', each list's own, of faces),
+// clockwise faces, normals, texture coordinates, colours (none, without and with alpha), transform (none, one, two),
+// separators, list of coordinates elsewhere (USE), last -1 missing, sides
 constexpr std::array kX3dCounts = {3, 3, 2, 2, 2, 3, 3, 2, 2, 2, 3};
 
 struct X3dFile {
@@ -469,6 +469,132 @@ struct X3dFile {
   }
 };
 
+// unit in centimetres (1, 100, 2.54), up axis (y, z), normals, texture coordinates (none, one set, the second of two),
+// colours, mapping of each (of corners: direct, by index; of vertices: direct, by index), materials of faces, model (none, turned, turned with a pivot, moved geometry), sides
+constexpr std::array kFbxCounts = {3, 2, 2, 3, 2, 4, 2, 4, 3};
+
+struct FbxFile {
+  std::string text;
+  Expected expected;
+
+  FbxFile(const std::array<int, kFbxCounts.size()>& c, Random& random) {
+    const bool z_up = c[1] == 1, normal = c[2] == 1, uv = c[3] > 0, color = c[4] == 1 && !uv;
+    const double unit = std::array{1.0, 100.0, 2.54}[static_cast<std::size_t>(c[0])] / 100;
+    const bool materials = c[6] == 1 && !uv;
+    expected.has_normals = normal, expected.has_uvs = uv, expected.has_colors = color;
+    expected.base_colors = {glm::dvec3(uv ? 1.0 : 0.25)};
+    if (materials) expected.base_colors.emplace_back(1, 0.5, 0);
+    std::string points, corners, of_materials;
+    std::array<std::vector<std::string>, 3> lists;  // normals, texture coordinates, colours
+    int at = 0;
+    for (int f = 0; f < 5; ++f) {
+      Face face = random.Polygon(3 + c[8], false);
+      if (materials) face.material = static_cast<std::size_t>(f % 2);
+      of_materials += (f == 0 ? "" : ",") + std::to_string(f % 2);
+      for (std::size_t i = 0; i < face.corners.size(); ++i) {
+        const Corner& corner = face.corners[i];
+        const auto into = [&](const glm::dvec3& v) { return z_up ? glm::dvec3(v.x, -v.z, v.y) : v; };
+        glm::dvec3 x = into(corner.position) / unit, n = into(corner.normal);
+        if (c[7] == 1 || c[7] == 2) {
+          x -= glm::dvec3(1, 2, 3);
+          const glm::dvec3 pivot(c[7] == 2 ? glm::dvec3(4, 5, 6) : glm::dvec3(0));
+          x -= pivot, x = glm::dvec3(x.y, -x.x, x.z) + pivot, n = glm::dvec3(n.y, -n.x, n.z);
+        } else if (c[7] == 3) {
+          x -= glm::dvec3(7, 8, 9);
+        }
+        const auto words = [](const glm::dvec3& v) { return fmt::format("{:.9g},{:.9g},{:.9g}", v.x, v.y, v.z); };
+        points += (at == 0 ? "" : ",") + words(x);
+        corners += (at == 0 ? "" : ",") + std::to_string(i + 1 < face.corners.size() ? at : -at - 1);
+        ++at;
+        lists[0].push_back(words(n));
+        lists[1].push_back(fmt::format("{:.9g},{:.9g}", corner.uv.x, corner.uv.y));
+        lists[2].push_back(words(corner.color) + ",1");
+      }
+      expected.faces.push_back(face);
+    }
+    // By index: from the last to the first.
+    const auto layer = [&](const std::string& element, int number, const std::string& set, const std::string& values,
+                           const std::string& index, const std::vector<std::string>& list) {
+      const bool by_index = c[5] == 1 || c[5] == 3;
+      std::string all, indices;
+      for (std::size_t i = 0; i < list.size(); ++i) {
+        all += (i == 0 ? "" : ",") + list[by_index ? list.size() - 1 - i : i];
+        indices += (i == 0 ? "" : ",") + std::to_string(list.size() - 1 - i);
+      }
+      return fmt::format(
+          "{}: {} {{\nVersion: 101\nName: \"{}\"\nMappingInformationType: \"{}\"\nReferenceInformationType: "
+          "\"{}\"\n{}: "
+          "*{} {{\na: {}\n}}\n{}}}\n",
+          element, number, set, c[5] < 2 ? "ByPolygonVertex" : "ByVertice", by_index ? "IndexToDirect" : "Direct",
+          values, std::ranges::count(all, ',') + 1, all,
+          by_index ? fmt::format("{}: *{} {{\na: {}\n}}\n", index, list.size(), indices) : "");
+    };
+    const auto reference = [](const std::string& type, int number) {
+      return "LayerElement: {\nType: \"" + type + "\"\nTypedIndex: " + std::to_string(number) + "\n}\n";
+    };
+    std::string layers, used, second;
+    if (normal)
+      layers += layer("LayerElementNormal", 0, "", "Normals", "NormalsIndex", lists[0]),
+          used += reference("LayerElementNormal", 0);
+    if (uv) {
+      if (c[3] == 2) {
+        layers +=
+            layer("LayerElementUV", 0, "first", "UV", "UVIndex", std::vector<std::string>(lists[1].size(), "0.5,0.5"));
+        second = "Layer: 1 {\nVersion: 100\n" + reference("LayerElementUV", 1) + "}\n";
+      }
+      layers += layer("LayerElementUV", c[3] - 1, "paint", "UV", "UVIndex", lists[1]);
+      used += reference("LayerElementUV", 0);
+    }
+    if (color)
+      layers += layer("LayerElementColor", 0, "", "Colors", "ColorIndex", lists[2]),
+          used += reference("LayerElementColor", 0);
+    layers += "LayerElementMaterial: 0 {\nVersion: 101\nName: \"\"\nMappingInformationType: \"" +
+              std::string(materials ? "ByPolygon" : "AllSame") +
+              "\"\nReferenceInformationType: \"IndexToDirect\"\nMaterials: *" +
+              (materials ? "5 {\na: " + of_materials : "1 {\na: 0") + "\n}\n}\n";
+    used += reference("LayerElementMaterial", 0);
+    const auto property = [](const std::string& name, const std::string& type, const std::string& value) {
+      return "P: \"" + name + "\", \"" + type + "\", \"\", \"A\"," + value + "\n";
+    };
+    std::string model;
+    if (c[7] == 1 || c[7] == 2)
+      model =
+          property("Lcl Translation", "Lcl Translation", "1,2,3") + property("Lcl Rotation", "Lcl Rotation", "0,0,90");
+    if (c[7] == 2) model += property("RotationPivot", "Vector3D", "4,5,6");
+    if (c[7] == 3) model = property("GeometricTranslation", "Vector3D", "7,8,9");
+    const auto properties = [](const std::string& all) { return "Properties70: {\n" + all + "}\n"; };
+    text =
+        "; FBX 7.4.0 project file\nFBXHeaderExtension: {\nFBXHeaderVersion: 1003\nFBXVersion: 7400\n}\n"
+        "GlobalSettings: {\nVersion: 1000\n" +
+        properties(property("UpAxis", "int", z_up ? "2" : "1") + property("UpAxisSign", "int", "1") +
+                   property("FrontAxis", "int", z_up ? "1" : "2") +
+                   property("FrontAxisSign", "int", z_up ? "-1" : "1") + property("CoordAxis", "int", "0") +
+                   property("CoordAxisSign", "int", "1") +
+                   property("UnitScaleFactor", "double", fmt::format("{}", 100 * unit))) +
+        "}\nObjects: {\nGeometry: 10, \"Geometry::g\", \"Mesh\" {\nVertices: *" + std::to_string(3 * at) +
+        " {\na: " + points + "\n}\nPolygonVertexIndex: *" + std::to_string(at) + " {\na: " + corners +
+        "\n}\nGeometryVersion: 124\n" + layers + "Layer: 0 {\nVersion: 100\n" + used + "}\n" + second +
+        "}\nModel: 20, \"Model::m\", \"Mesh\" {\nVersion: 232\n" + properties(model) + "}\n";
+    std::string links = "C: \"OO\",20,0\nC: \"OO\",10,20\n";
+    for (std::size_t m = 0; m < expected.base_colors.size(); ++m) {
+      const glm::dvec3& kd = expected.base_colors[m];
+      text +=
+          fmt::format("Material: 3{}, \"Material::m{}\", \"\" {{\nVersion: 102\nShadingModel: \"lambert\"\n", m, m) +
+          properties(property("DiffuseColor", "Color", fmt::format("{},{},{}", kd.r, kd.g, kd.b))) + "}\n";
+      links += fmt::format("C: \"OO\",3{},20\n", m);
+    }
+    if (uv) {
+      text +=
+          "Texture: 40, \"Texture::t\", \"\" {\nType: \"TextureVideoClip\"\nVersion: 202\nTextureName: "
+          "\"Texture::t\"\n" +
+          properties(property("UVSet", "KString", "\"paint\"")) +
+          "FileName: \"C:\\elsewhere\\a picture.png\"\nRelativeFilename: \"a picture.png\"\n}\n";
+      links += "C: \"OP\",40,30, \"DiffuseColor\"\n";
+    }
+    text += "}\nConnections: {\n" + links + "}\n";
+  }
+};
+
 TEST(FormatProperty, RandomOffFilesAreWhatTheyDescribe) { ExpectDescribed<OffFile>(600, kOffCounts, "m.off"); }
 
 TEST(FormatProperty, RandomThreeMfFilesAreWhatTheyDescribe) {
@@ -482,6 +608,8 @@ TEST(FormatProperty, RandomColladaFilesAreWhatTheyDescribe) {
 TEST(FormatProperty, RandomStlFilesAreWhatTheyDescribe) { ExpectDescribed<StlFile>(600, kStlCounts, "m.stl"); }
 
 TEST(FormatProperty, RandomX3dFilesAreWhatTheyDescribe) { ExpectDescribed<X3dFile>(200, kX3dCounts, "m.x3d"); }
+
+TEST(FormatProperty, RandomFbxFilesAreWhatTheyDescribe) { ExpectDescribed<FbxFile>(200, kFbxCounts, "m.fbx"); }
 
 }  // namespace
 }  // namespace sim::test

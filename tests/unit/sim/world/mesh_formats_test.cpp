@@ -311,6 +311,15 @@ TEST(MeshFormats, FbxWarnings) {
   EXPECT_THAT(
       FbxWarnings("P: \"Visibility\", \"Visibility\", \"\", \"A\", 1\nP: \"WrapModeU\", \"enum\", \"\", \"\",0"),
       testing::IsEmpty());
+  const auto layer = [](const std::string& mapping) {
+    return FbxWarnings("\nLayerElementUV: 0 {\nMappingInformationType: \"" + mapping +
+                       "\"\n}\nType: \"LayerElementNormal\"\nMappingInformationType: \"AllSame\"");
+  };
+  EXPECT_THAT(layer("ByPolygon"), testing::ElementsAre(testing::HasSubstr("LayerElementUV of whole faces")));
+  EXPECT_THAT(layer("ByPolygonVertex"), testing::IsEmpty());
+  EXPECT_THAT(FbxWarnings(std::string(
+                  "Kaydara FBX Binary \x11LayerElementColor\x16MappingInformationTypeS\x07\0\0\0AllSame", 72)),
+              testing::SizeIs(1));
   EXPECT_THAT(FbxWarnings(std::string("Kaydara FBX Binary  S\x04\0\0\0Show", 29)), testing::IsEmpty()) << "cut off";
 }
 
