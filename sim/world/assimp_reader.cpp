@@ -330,9 +330,6 @@ class Converter {
 void ReadByAssimp(MeshFiles& files, MeshImport& import) {
   const std::string extension = LowerExtension(files.mesh());
   if (extension == ".fbx") import.warnings = FbxWarnings(files.Read(files.mesh()).value_or(""));
-  if (extension == ".dae" && files.Read(files.mesh()).value_or("").find("<skew") != std::string::npos)
-    import.problem = "has a <skew>, which is not read: export it with <matrix>, or as .glb";
-  if (!import.problem.empty()) return;
   Assimp::Importer importer;
   importer.SetIOHandler(new ImporterFiles(files, import));  // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // which would stand for joints

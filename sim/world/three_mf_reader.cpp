@@ -121,13 +121,7 @@ class ThreeMfReader {
   }
 
   void ReadModel(const std::string& name) {
-    const std::string whole = zip_.Read(name);
-    std::string text;  // without comments
-    for (std::string_view rest = whole; !rest.empty();) {
-      text += rest.substr(0, rest.find("<!--"));
-      rest.remove_prefix(std::min(rest.find("<!--"), rest.size()));
-      rest.remove_prefix(std::min(rest.find("-->"), rest.size()));
-    }
+    const std::string text = zip_.Read(name);
     // A part of the archive with an identifier in it.
     const auto key = [&](std::string_view tag, const char* id) {
       const std::string_view path = Attribute(tag, "p:path");

@@ -31,10 +31,15 @@ inline bool IsTag(std::string_view tag, std::string_view name) {
   return tag.starts_with(name) && tag.size() > name.size() && kBlanks.find(tag[name.size()]) != std::string_view::npos;
 }
 
+// Without those in comments.
 template <class Call>
 void ForEachTag(std::string_view text, const Call& call) {
   for (std::size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1)) {
-    call(text.substr(at, text.find('>', at) - at));
+    if (text.substr(at).starts_with("<!--")) {
+      at = std::min(text.find("-->", at), text.size());
+    } else {
+      call(text.substr(at, text.find('>', at) - at));
+    }
   }
 }
 

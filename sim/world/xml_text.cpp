@@ -152,6 +152,8 @@ std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& wa
   bool has_diffuse = false, has_emission = false;  // of the shader at hand
   bool is_morph = false;                           // the controller at hand
   ForEachTag(text, [&](std::string_view tag) {
+    if (IsTag(tag, "<skew") || tag == "<skew")
+      throw std::runtime_error("it has a <skew>, which is not read: export it with <matrix>, or as .glb");
     has_diffuse = has_diffuse || tag.starts_with("<diffuse");
     has_emission = has_emission || tag.starts_with("<emission");
     for (const std::string shader : {"constant", "lambert", "phong", "blinn"}) {

@@ -594,6 +594,8 @@ TEST(MeshFormats, ColladaWithSkewIsRefused) {
   const std::string node = "<node id='n'><skew>45 0 1 0 1 0 0</skew><instance_geometry url='#g'/></node>";
   const WorldDescription world = WorldOf(folder.Write("m.dae", ColladaTriangle("Y_UP", "<lambert/>", node)));
   EXPECT_THAT(ProblemTextOf([&] { LoadScene(world); }), HasSubstr("<skew>, which is not read"));
+  std::vector<std::string> none;
+  EXPECT_THAT(ColladaForAssimp("<!-- <a/> <skew>1</skew> -->", none), HasSubstr("skew")) << "a comment";
 }
 
 // COLLADA with two sets of texture coordinates: the bound one counts, by its number among those of the polygons.
@@ -669,6 +671,7 @@ TEST(MeshFormats, X3dWarnings) {
   EXPECT_THAT(warnings("<TextureTransform rotation='1'/>"), ElementsAre(HasSubstr("turns")));
   EXPECT_THAT(warnings("<TextureTransform scale='2 2'/>"), IsEmpty());
   EXPECT_THAT(warnings("<Shape DEF='a'/><Shape USE='a'/>"), ElementsAre(HasSubstr("several places (USE)")));
+  EXPECT_THAT(warnings("<!-- <IndexedFaceSet coordIndex='7'> <Inline url='b.x3d'/> --><Group/>"), IsEmpty());
   EXPECT_THAT(warnings("<Inline url='b.x3d'/>"), ElementsAre(HasSubstr("(Inline) are not read")));
   EXPECT_THAT(warnings("<MultiTexture><PixelTexture image='0 0 0'/>"), ElementsAre(HasSubstr("than ImageTexture")));
   std::vector<std::string> none;
