@@ -243,6 +243,7 @@ std::string_view Defined(std::string_view text, std::string_view tag, std::strin
 
 // A set of faces or triangles (its tag, and what is in it) as an IndexedFaceSet where each corner has a position of its
 // own: assimp knows one normal, texture coordinate and colour for each position, and no faces that are turned about.
+// Empty: it has no faces.
 std::string WithOwnCorners(std::string_view text, std::string_view tag, std::string_view inside) {
   struct List {
     std::string_view node, values, index, per_vertex;
@@ -284,6 +285,9 @@ std::string WithOwnCorners(std::string_view text, std::string_view tag, std::str
     if (i > first) out += "-1 ", ++faces;
     first = i + 1;
   }
+  if (order.empty()) return "";
+  if (lists[0].all.empty())
+    throw std::runtime_error("a set of faces has no Coordinate (CoordinateDouble and GeoCoordinate are not read)");
   out += "'>";
   for (const List& list : lists) {
     if (list.all.empty()) continue;
@@ -323,8 +327,10 @@ std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnin
       const std::size_t end = text.find("</" + node, end_of_tag);
       if (end == std::string_view::npos) continue;
       out.append(text.substr(done, begin_of_tag - done));
-      if (node != "IndexedLineSet") out.append(WithOwnCorners(text, tag, text.substr(end_of_tag, end - end_of_tag)));
-      done = end + 2 + node.size() + (node == "IndexedLineSet" ? 1 : 0);
+      const std::string set =
+          node == "IndexedLineSet" ? "" : WithOwnCorners(text, tag, text.substr(end_of_tag, end - end_of_tag));
+      out.append(set);
+      done = std::min(end + 2 + node.size() + (set.empty() ? 1 : 0), text.size());
     }
     for (const std::string_view node : kLists) {  // of other sets: the definition may have been replaced
       const std::string_view from = IsTag(tag, node) && begin_of_tag >= done ? Defined(text, tag, node) : tag;

@@ -14,8 +14,8 @@ namespace sim {
 // 1.5 are such of 1.4.
 std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& warnings);
 
-// With the first of several texts in quotes (URLs), with sets of faces and triangles whose corners share nothing, without
-// lines, with known grouping nodes for others. What assimp leaves out or draws otherwise is a warning.
+// With the first of several texts in quotes (URLs), with sets of faces and triangles whose corners share nothing,
+// without lines, with known grouping nodes for others. What assimp leaves out or draws otherwise is a warning.
 std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnings);
 
 }  // namespace sim

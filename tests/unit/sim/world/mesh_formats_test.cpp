@@ -693,6 +693,15 @@ TEST(MeshFormats, X3dSharedLists) {
   std::vector<std::size_t> triangles;
   for (const Mesh& mesh : LoadScene(file("0 1 2 3")).meshes) triangles.push_back(mesh.triangles.size());
   EXPECT_THAT(triangles, ElementsAre(2u, 2u, 2u));
+  EXPECT_THAT(LoadScene(WorldOf(folder.Write("e.x3d",
+                                             "<X3D><Scene><Shape><IndexedFaceSet coordIndex=''><Coordinate "
+                                             "point=''/></IndexedFaceSet></Shape><Shape><Box/></Shape></Scene></X3D>")))
+                  .meshes,
+              SizeIs(1));
+  const std::string no_list = "<IndexedTriangleSet index='0 1 2'><CoordinateDouble point='0'/></IndexedTriangleSet>";
+  std::vector<std::string> none;
+  EXPECT_THROW(X3dForAssimp(no_list, none), std::runtime_error);
+  EXPECT_EQ(X3dForAssimp("<IndexedLineSet a=''></IndexedLineSet", none), "");
   EXPECT_THAT(ProblemTextOf([&] { LoadScene(file("0 1 4 -1")); }), HasSubstr("not in its list (Coordinate)"));
 }
 
