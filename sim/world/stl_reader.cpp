@@ -18,6 +18,7 @@ struct StlFile {
 
   // A polygon of the last `size` positions; color: its index, or -1.
   void Close(std::size_t size, std::int32_t color) {
+    if (solids.empty()) throw std::runtime_error("a facet outside of a solid");
     Polygons& polygons = solids.back().second;
     for (std::size_t i = pools.positions.size() - size; i < pools.positions.size(); ++i)
       polygons.corners.push_back({static_cast<std::int32_t>(i), -1, -1, color});

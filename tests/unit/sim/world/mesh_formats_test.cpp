@@ -477,6 +477,9 @@ TEST(MeshFormats, StlByHand) {
   EXPECT_EQ(scene.meshes[0].name, "b");
   EXPECT_THAT(scene.meshes[0].triangles, SizeIs(1));
   EXPECT_THAT(ProblemTextOf([&] { LoadScene(WorldOf(file(""))); }), HasSubstr("ends too early"));
+  const std::string outside = "solidx facet\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n";
+  EXPECT_THAT(ProblemTextOf([&] { LoadScene(WorldOf(folder.Write("m.stl", outside))); }),
+              HasSubstr("outside of a solid"));
 }
 
 TEST(MeshFormats, ColladaWarnings) {
