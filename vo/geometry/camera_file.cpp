@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
@@ -85,6 +86,46 @@ void ReadOwn(settings::Section root, Camera& camera) {
   }
 }
 
+// Rejects keys that state a part of the camera otherwise than what was read.
+void RejectOtherValues(settings::Section root, const Camera& camera) {
+  const Camera& c = camera;
+  const bool fisheye = c.lens == Lens::fisheye;
+  const double width = c.width, height = c.height;
+  const std::vector<std::pair<const char*, std::vector<double>>> all = {{"fx", {c.fx}},
+                                                                        {"fy", {c.fy}},
+                                                                        {"cx", {c.cx}},
+                                                                        {"cy", {c.cy}},
+                                                                        {"k1", {c.k1}},
+                                                                        {"k2", {c.k2}},
+                                                                        {"k3", {c.k3}},
+                                                                        {"k4", {fisheye ? c.k4 : 0}},
+                                                                        {"p1", {c.p1}},
+                                                                        {"p2", {c.p2}},
+                                                                        {"skew", {0}},
+                                                                        {"width", {width}},
+                                                                        {"height", {height}},
+                                                                        {"image_width", {width}},
+                                                                        {"image_height", {height}},
+                                                                        {"image_size", {width, height}},
+                                                                        {"resolution", {width, height}},
+                                                                        {"intrinsics", {c.fx, c.fy, c.cx, c.cy}}};
+  for (const auto& [key, ours] : all) {
+    std::vector<settings::RawYaml> texts;
+    if (!root.Has(key) || !root.ReadRaw(key, texts)) continue;
+    std::vector<double> theirs;
+    for (const settings::RawYaml& each : texts)
+      if (const auto number = base::ParseNumber(base::WithoutPlus(each.text))) theirs.push_back(*number);
+    if (theirs.size() != ours.size()) continue;
+    const auto differs = [](double a, double b) { return !(std::abs(a - b) <= 1e-6 * std::abs(b) + 1e-12); };
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      if (!differs(theirs[i], ours[i])) continue;
+      root.Reject(key, std::string("'") + key + "' has " + base::Significant(theirs[i], 9) + " where the rest has " +
+                           base::Significant(ours[i], 9) + ": keep what is right");
+      break;
+    }
+  }
+}
+
 // First data of the first line that is not a comment.
 std::string_view FirstData(std::string_view text) {
   while (text.starts_with('#') || text.starts_with('\n') || text.starts_with('\r')) {
@@ -126,16 +167,32 @@ std::optional<double> ForeignReadout(std::string_view text, const std::filesyste
   return is_stated ? std::optional(rolls * readout_s) : std::nullopt;
 }
 
+// A calibration of another program that is not read, by a word in it; else empty.
+std::string UnreadKind(std::string_view text) {
+  for (const auto& [word, kind] : {std::pair{"\"camera_angle_x\"", "NeRF's transforms.json"},
+                                   {"\"fl_x\"", "nerfstudio's transforms.json, whose first pixel has its corner at 0"},
+                                   {"\"intrinsic_matrix\"", "Open3D's, whose matrix is written column by column"},
+                                   {"\"ppx\"", "RealSense's"},
+                                   {"[image]", "the ini file of ROS, which has a YAML file beside it"},
+                                   {"P0:", "KITTI's, of several cameras and without the size of the images"},
+                                   {"K_00:", "KITTI's, of several cameras"},
+                                   {"P_rect_00:", "KITTI's, of several cameras"}})
+    if (text.find(word) != std::string_view::npos) return kind;
+  return "";
+}
+
 Camera CameraOfText(std::string_view text, const std::filesystem::path& file) {
   const auto refuse = [&] {
-    throw settings::Error(
-        {{file.string(), 0, 0,
-          "is no calibration of a kind that is known here: docs/conventions.md, \"Camera files\", has "
-          "a list"}});
+    const std::string kind = UnreadKind(text);
+    throw settings::Error({{file.string(), 0, 0,
+                            "is no calibration of a kind that is known here: docs/conventions.md, \"Camera files\", "
+                            "has a list" +
+                                (kind.empty() ? "" : "; it is " + kind + ": write its numbers as a camera.yaml")}});
   };
   if (std::optional<Camera> camera = ReadTextCamera(text, file)) return *camera;
   const std::string_view data = FirstData(text);
-  const bool is_xml = data.starts_with('<'), is_ours = !is_xml && HasLine(text, "fx:");
+  const bool is_xml = data.starts_with('<'), is_tagged = text.find("!!opencv") != std::string_view::npos,
+             is_ours = !is_xml && !is_tagged && HasLine(text, "fx:");
   const bool is_json = data.starts_with('{') && data.substr(1, data.find_first_not_of(" \t\r\n", 1)).ends_with('"');
   const std::string extension = file.extension().string();
   std::optional<settings::Document> read;
@@ -174,6 +231,8 @@ Camera CameraOfText(std::string_view text, const std::filesystem::path& file) {
     document.ThrowIfBad();
     refuse();
   }
+  document.ThrowIfBad();
+  RejectOtherValues(root, camera);
   document.ThrowIfBad();
   return camera;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -30,7 +32,7 @@ void ReadCoefficients(settings::Section& section, const std::string& prefix, Cam
     if (fisheye && !section.Has(prefix + name)) missing += (missing.empty() ? "" : ", ") + prefix + name;
   }
   const std::string problem = missing.empty() ? SetLens(values, camera) : "is a fisheye: add its " + missing;
-  if (!problem.empty()) section.Reject(prefix + "k4", "the lens " + problem);
+  if (!problem.empty()) section.Reject(prefix + (missing.empty() ? "k4" : "fx"), "the lens " + problem);
 }
 
 // ORB-SLAM2 and 3, OpenVSLAM and stella_vslam: prefixes of the keys of the camera and of its projection.
@@ -122,7 +124,9 @@ void ReadCameraInfo(settings::Section root, Camera& camera) {
   std::vector<double> matrix, coefficients;
   RequireSize(root, is_file ? "image_width" : "width", is_file ? "image_height" : "height", camera);
   const bool has_lens = RequireNumbers(root, d, coefficients) && !coefficients.empty();
-  root.Allow("distortion_model");  // which may be empty where there is none
+  std::vector<settings::RawYaml> model;  // which may be empty where there is none
+  if (root.ReadRaw("distortion_model", model) && !has_lens && model.size() == 1 && model[0].text == "equidistant")
+    root.Reject(d, "an equidistant lens has k1 ... k4, which are missing");
   if (has_lens &&
       root.RequireChoice("distortion_model", camera.lens,
                          {{"plumb_bob", kPlain}, {"rational_polynomial", kPlain}, {"equidistant", kFisheye}})) {
@@ -132,13 +136,17 @@ void ReadCameraInfo(settings::Section root, Camera& camera) {
   if (RequireNumbers(root, k, matrix)) {
     if (const std::string problem = SetMatrix(matrix, camera); !problem.empty()) root.Reject(k + ".data", problem);
   }
-  int binning_x = 0, binning_y = 0, left = 0, top = 0;
+  int binning_x = 0, binning_y = 0, left = 0, top = 0, width = 0, height = 0;
   root.Read("binning_x", binning_x);
   root.Read("binning_y", binning_y);
   if (binning_x > 1 || binning_y > 1)
     root.Reject(binning_x > 1 ? "binning_x" : "binning_y", "the images are binned: calibrate them as they are");
   settings::Section roi = root.Child("roi");
-  if ((roi.Read("x_offset", left) && left != 0) || (roi.Read("y_offset", top) && top != 0))
+  roi.Read("x_offset", left);
+  roi.Read("y_offset", top);
+  roi.Read("width", width);
+  roi.Read("height", height);
+  if (left != 0 || top != 0 || (width != 0 && width != camera.width) || (height != 0 && height != camera.height))
     root.Reject("roi", "the images are a region of the sensor (roi): calibrate them as they are");
   roi.IgnoreRest();
 }
@@ -158,8 +166,17 @@ bool RequireNumbers(settings::Section& section, const std::string& key, std::vec
   const auto begins = [&](char c) { return !parts.empty() && parts[0].yaml.starts_with(c); };
   if (begins('{')) {
     settings::Section matrix = section.Child(key);
+    int rows = 0, columns = 0;
+    constexpr settings::Range kCount{0, std::numeric_limits<int>::max()};
+    const bool has_size = matrix.Read("rows", rows, kCount) && matrix.Read("cols", columns, kCount);
     matrix.IgnoreRest();
-    return RequireNumbers(matrix, "data", values);
+    if (!RequireNumbers(matrix, "data", values)) return false;
+    const std::int64_t count = static_cast<std::int64_t>(rows) * columns;
+    if (!has_size || count == static_cast<std::int64_t>(values.size())) return true;
+    matrix.Reject("data", "'" + key + ".data': expected " + std::to_string(count) + " numbers, " +
+                              std::to_string(rows) + " x " + std::to_string(columns) + ", not " +
+                              std::to_string(values.size()));
+    return false;
   }
   if (!begins('[')) return section.Require(key, values);
   for (const settings::RawYaml& part : parts) {

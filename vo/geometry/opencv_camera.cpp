@@ -2,9 +2,7 @@
 // slightly malformed files.
 #include <algorithm>
 #include <cctype>
-#include <cstdint>
 #include <initializer_list>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -21,16 +19,7 @@ std::optional<std::vector<double>> OpenCvMatrix(settings::Section root, const st
     root.Reject(key, "'" + key + "' must be a matrix: rows, cols and data");
     return std::nullopt;
   }
-  if (!RequireNumbers(root, key, values)) return std::nullopt;
-  settings::Section section = root.Child(key);
-  int rows = 0, columns = 0;
-  constexpr settings::Range kCount{0, std::numeric_limits<int>::max()};
-  const bool has_rows = section.Read("rows", rows, kCount), has_columns = section.Read("cols", columns, kCount);
-  const std::int64_t count = static_cast<std::int64_t>(rows) * columns;
-  if (!has_rows || !has_columns || count == static_cast<std::int64_t>(values.size())) return values;
-  section.Reject("data", "'" + key + ".data': expected " + std::to_string(count) + " numbers, " + std::to_string(rows) +
-                             " x " + std::to_string(columns) + ", not " + std::to_string(values.size()));
-  return std::nullopt;
+  return RequireNumbers(root, key, values) ? std::optional(values) : std::nullopt;
 }
 
 // The characters of names and numbers.
@@ -144,14 +133,19 @@ void ReadOpenCv(settings::Section root, Camera& camera) {
     return root.IgnoreRest();
   }
   // The key that is present, of the spellings of OpenCV's programs and their kin.
-  const auto spelt = [&](const std::vector<std::string>& keys) {
-    const auto at = std::ranges::find_if(keys, [&](const std::string& key) { return root.Has(key); });
+  const auto spelt = [&](const std::vector<std::string>& keys, const std::string& other = "") {
+    const auto has = [&](const std::string& key) { return root.Has(key); };
+    const auto at = std::ranges::find_if(keys, has);
+    const auto second = at == keys.end() ? at : std::find_if(at + 1, keys.end(), has);
+    const std::string again = second != keys.end() ? *second : at != keys.end() && has(other) ? other : "";
+    if (!again.empty()) root.Reject(again, "'" + again + "' states what '" + *at + "' does: keep one");
     return at == keys.end() ? keys[0] : *at;
   };
   RequireSize(root, spelt({"image_width", "image_Width"}), spelt({"image_height", "image_Height"}), camera);
   int fisheye = 0;
   if (root.Read("fisheye_model", fisheye) && fisheye != 0) camera.lens = Lens::fisheye;
-  for (const char* key : {"fisheye", "model", "camera_model", "distortion_model", "distortion_type"}) {
+  for (const char* key : {"fisheye", "model", "lens", "camera_type", "camera_model", "distortion_model",
+                          "distortion_type", "calibration_model", "lens_model", "lens_type", "projection_model"}) {
     std::string model;
     if (!root.Has(key) || !root.Read(key, model)) continue;
     const auto is_any_of = [&](std::initializer_list<std::string_view> names) {
@@ -161,16 +155,19 @@ void ReadOpenCv(settings::Section root, Camera& camera) {
                is_plain =
                    is_any_of({"false", "0", "none", "pinhole", "PINHOLE", "plumb_bob", "radtan", "radial_tangential"});
     if (is_fisheye) camera.lens = Lens::fisheye;
-    if (!is_fisheye && !is_plain && std::string_view(key) != "model")  // which may be a name
+    const std::string_view k = key;
+    const bool may_be_a_name = (k == "model" || k == "lens" || k == "camera_type") &&
+                               !is_any_of({"omni", "mei", "MEI", "ds", "double_sphere", "eucm", "fov"});
+    if (!is_fisheye && !is_plain && !may_be_a_name)
       root.Reject(
           key, std::string("'") + key + "' is '" + model + "': pinhole (plumb_bob) and fisheye (equidistant) are read");
   }
-  const std::string matrix_key = spelt(kMatrixKeys);
+  const std::string matrix_key = spelt(kMatrixKeys, "K");
   if (const auto matrix = OpenCvMatrix(root, matrix_key)) {
     if (const std::string problem = SetMatrix(*matrix, camera); !problem.empty()) root.Reject(matrix_key, problem);
   }
-  const std::string lens_key =
-      spelt({"distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "dist_coeff", "D1"});
+  const std::string lens_key = spelt(
+      {"distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "dist_coeffs", "dist_coeff", "D1"}, "D");
   const auto coefficients = OpenCvMatrix(root, lens_key);
   if (coefficients && !(coefficients->empty() && camera.lens == Lens::radial_tangential)) {
     if (const std::string problem = SetLens(*coefficients, camera); !problem.empty())

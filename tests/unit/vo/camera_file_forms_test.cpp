@@ -190,6 +190,44 @@ TEST_F(CameraFileForms, OtherPrograms) {
           {"okvis.yaml", "%YAML:1.0\ncameras:\n  - {image_dimension: [752, 480]}\nimage_width: 752\n", "OKVIS"}});
 }
 
+// Keys beside a matrix that state the same otherwise, and parts of a camera_info that change the images.
+TEST_F(CameraFileForms, KeysThatContradict) {
+  const std::string opencv = kSize + "camera_matrix: " + kMatrix + "\ndist_coeffs: " + kLens + "\n",
+                    words = " where the rest has ";
+  const std::string ros = Replaced(opencv, "dist_coeffs", "distortion_coefficients") + "distortion_model: plumb_bob\n";
+  std::vector<Case> cases = {
+      {"same.yaml", opencv + "fx: 458.5\nk1: -0.25\nk3: 0\nwidth: 752\nimage_size: [752, 480]\nfocal_length: 900\n"},
+      {"tagged.yaml",
+       Replaced(opencv, ": [458", ": !!opencv-matrix\n  rows: 3\n  cols: 3\n  data: [458") + "fx: 458.5\n"},
+      {"second.yaml", opencv + "M1: " + kMatrix, "'M1' states what 'camera_matrix' does"},
+      {"k.yaml", opencv + "K: " + kMatrix, "'K' states what 'camera_matrix' does"},
+      {"d.yaml", opencv + "D: " + kLens, "'D' states what 'dist_coeffs' does"},
+      {"lens.yaml", opencv + "lens: omni", "'lens' is 'omni'"},
+      {"name.yaml", opencv + "model: Basler"},
+      {"ros.yaml", ros + "fx: 900", "'fx' has 900 where the rest has 458.5"},
+      {"roi.yaml", ros + "roi: {x_offset: 0, y_offset: 0, width: 376, height: 240}", "region of the sensor"},
+      {"full.yaml", ros + "roi: {x_offset: 0, y_offset: 0, width: 752, height: 480}"},
+      {"empty.yaml", Replaced(Replaced(ros, kLens, "[]"), "plumb_bob", "equidistant"), "k1 ... k4, which are missing"},
+      {"count.yaml", Replaced(ros, kLens, "{rows: 1, cols: 5, data: " + kLens + "}"),
+       "expected 5 numbers, 1 x 5, not 4"}};
+  for (const char* key : {"fx: 900", "cy: 200", "k1: 0.3", "k4: 0.1", "p1: 0.5", "skew: 0.3", "width: 1504",
+                          "image_size: [1504, 960]", "resolution: [1504, 960]", "intrinsics: [900, 900, 376, 240]"})
+    cases.push_back({"other.yaml", opencv + key, words});
+  Expect(cases);
+  EXPECT_THAT(ErrorOf(folder_.Write("place.yaml", opencv + "fx: 900").string()), HasSubstr("place.yaml:5:5: "));
+}
+
+TEST_F(CameraFileForms, OtherProgramsByName) {
+  Expect(
+      {{"calib.txt", "P0: 718 0 607 0 0 718 185 0 0 0 1 0\n", "KITTI's"},
+       {"calib_cam_to_cam.txt", "calib_time: 09-Jan-2012 13:57:47\nK_00: 984 0 690 0 980 233 0 0 1\n", "KITTI's"},
+       {"transforms.json", R"({"fl_x": 458.5, "fl_y": 457, "cx": 367, "cy": 248, "w": 752, "h": 480})", "nerfstudio's"},
+       {"blender.json", R"({"camera_angle_x": 0.69, "frames": []})", "NeRF's"},
+       {"open3d.json", R"({"width": 752, "height": 480, "intrinsic_matrix": [458, 0, 0, 0, 457, 0, 367, 248, 1]})",
+        "Open3D's"},
+       {"ost.ini", "[image]\n\nwidth\n640\n\nheight\n480\n", "the ini file of ROS"}});
+}
+
 TEST_F(CameraFileForms, NumbersThatNoCameraHas) {
   const auto own = [](const std::string& fx, const std::string& cx) {
     return "width: 752\nheight: 480\nfx: " + fx + "\nfy: 457.25\ncx: " + cx +

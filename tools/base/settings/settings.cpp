@@ -224,6 +224,7 @@ std::vector<Section> Section::List(const std::string& key, const std::string& sh
 const Place& Section::PlaceOf(const std::string& key) const {
   const Element* element = request_->element;
   const Place* place = &request_->place;
+  if (element && element->kind == Element::Kind::map && element->Find(key)) return element->Find(key)->place;  // "a.b"
   for (const std::string& part : Split(key)) {
     element = element && element->kind == Element::Kind::map ? element->Find(part) : nullptr;
     if (element) place = &element->place;
