@@ -204,13 +204,19 @@ bool StatesRealPartFirst(std::string_view comment) {
   return HasAny(Lower(comment), {"wxyz", "w x y z", "w, x, y, z", "qw qx", "qw, qx", "scalar first", "scalar-first"});
 }
 
+bool StatesInverse(std::string_view comment) {
+  return HasAny(Lower(comment), {"world to cam", "world-to-cam", "world_to_cam", "world2cam", "t_cw"});
+}
+
 std::vector<Word> Cells(std::string_view line) {
   for (const char separator : {';', ','}) {
     if (std::ranges::count(line, separator) < static_cast<std::ptrdiff_t>(PoseHeader::kPose) - 1) continue;
     std::vector<Word> cells;
     bool has_words = false;  // numbers with decimal commas
     for (std::size_t begin = 0; begin <= line.size();) {
-      const std::size_t end = std::min(line.find(separator, begin), line.size());
+      std::size_t end = begin;
+      for (bool is_quoted = false; end < line.size() && (is_quoted || line[end] != separator); ++end)
+        is_quoted = is_quoted != (line[end] == '"');
       std::string_view cell = line.substr(begin, end - begin);
       const std::size_t first = std::min(cell.find_first_not_of(" \t\r\"'"), cell.size());
       cell.remove_prefix(first);
@@ -267,7 +273,7 @@ std::optional<PoseHeader> ReadPoseHeader(std::string_view written, std::string& 
     if (found.is_complete())
       problem = "the header names two poses a line: keep one";
     else if ((has_w && (is_prose ? has(1) && has(2) && has(3) : has(1) || has(4))) ||
-             (!is_prose && has(kStamp) && has(1) && has(2) && has(3)))
+             (!is_prose && has(1) && has(2) && has(3)))
       problem = "the header names no column for " + missing + all;
     return std::nullopt;
   }

@@ -12,12 +12,15 @@
 
 namespace base {
 
-// Cells of a line: what commas or semicolons separate where it has seven and more, without blanks and quotes about
-// them (some may be empty, the last is not); else its words.
+// Cells of a line: what commas or semicolons outside of double quotes separate where it has seven and more, without
+// blanks and quotes about them (some may be empty, the last is not); else its words.
 std::vector<Word> Cells(std::string_view line);
 
 // Whether a comment says that a quaternion begins with w.
 bool StatesRealPartFirst(std::string_view comment);
+
+// Whether it says that poses map the world to the camera.
+bool StatesInverse(std::string_view comment);
 
 struct PoseHeader {
   static constexpr std::size_t kPose = 8;

@@ -14,7 +14,7 @@ constexpr const char* kOfColmap =
     "is COLMAP's images.txt, whose poses have no times and map the world to the camera: convert it";
 
 bool IsDigit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
-bool IsNumber(const Word& word) { return ParseNumber(word.text).has_value(); }
+bool IsNumber(const Word& word) { return ParseNumber(WithoutPlus(word.text)).has_value(); }
 
 bool HasDecimalComma(std::string_view text) {
   for (std::size_t i = 1; i + 1 < text.size(); ++i)
@@ -78,6 +78,10 @@ std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
   if (IsComment(words[0].text) || is_header) {
     if (is_first_) problem = KindOf(line);
     if (is_first_ && problem.empty() && !header_) header_ = ReadPoseHeader(line, problem);
+    if (is_header && !header_ && problem.empty())
+      problem = "the header names no columns of a pose: name them timestamp tx ty tz qx qy qz qw, in their order";
+    if (is_first_ && problem.empty() && StatesInverse(line))
+      problem = "a comment says that poses map the world to the camera: invert them";
     w_is_first_ = w_is_first_ || StatesRealPartFirst(line);
     return {};
   }
@@ -92,6 +96,12 @@ std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
     problem = "seventeen numbers a line are times and matrices: write a quaternion (timestamp tx ty tz qx qy qz qw)";
   words = InOrder(std::move(words), problem);
   if (is_first_ && problem.empty()) problem = OtherKind(line, words, Stamp(words[0]));
+  constexpr std::int64_t kLongest_ns = 1'000'000'000'000;
+  const std::optional<std::int64_t> stamp_ns = ParseSeconds(Stamp(words[0]));
+  if (first_ns_ && stamp_ns && problem.empty() && *stamp_ns - *first_ns_ > kLongest_ns)
+    problem = "time " + Stamp(words[0]) + " is more than 1000 s after the first: write seconds, or name the unit (" +
+              "timestamp_ns)";
+  first_ns_ = is_first_ ? stamp_ns : std::nullopt;
   is_first_ = false;
   return words;
 }
@@ -102,8 +112,9 @@ std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& probl
     const bool is_run = header_->is_prose && words.size() != header_->count;
     const std::size_t first = is_run ? std::ranges::min(columns) : 0;
     const std::size_t last = std::max(std::ranges::max(columns), header_->fraction.value_or(0));
-    if (words.size() <= last - first) {
-      if (is_first_ || words.size() == kPose)  // which would be taken for a pose
+    const bool is_long = !is_run && header_->count > kPose && words.size() > header_->count;
+    if (is_long || words.size() <= last - first) {
+      if (is_long || is_first_ || words.size() == kPose)  // which would be taken for a pose
         problem = "the header names " + std::to_string(header_->count) + " columns, and this row has " +
                   std::to_string(words.size());
       return words;

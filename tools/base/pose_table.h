@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,7 +22,8 @@ class PoseTable {
 
   // The words `timestamp tx ty tz qx qy qz qw` of the next line, in this order; none of a line without a pose (empty, a
   // comment, a header). A row of another length is returned unchanged. problem: where the header, or the first row,
-  // shows another kind of file or does not say which column is which, and where a shorter row looks like a pose.
+  // shows another kind of file or does not say which column is which, where a shorter row looks like a pose or one is
+  // longer than the header, and where the second is more than 1000 s after the first.
   std::vector<Word> Row(std::string_view line, std::string& problem);
   // Of the last row's first word, in seconds.
   std::string Stamp(const Word& word) const;
@@ -30,7 +32,8 @@ class PoseTable {
   std::vector<Word> InOrder(std::vector<Word> words, std::string& problem);
 
   bool is_euroc_, is_first_ = true, w_is_first_ = false;
-  std::string fraction_;  // of the last row's stamp, where it has a column
+  std::optional<std::int64_t> first_ns_;  // before the second row
+  std::string fraction_;                  // of the last row's stamp, where it has a column
   std::optional<PoseHeader> header_;
 };
 

@@ -162,5 +162,22 @@ TEST(PoseTable, RefusesOtherKindsByTheFirstRow) {
   EXPECT_EQ(LastOf("1 1 2 3 0 0 0 1\n2 1 2 3").size(), 4u) << "a later row comes as it is";
 }
 
+TEST(PoseTable, RowsAndHeadersThatWouldBeTakenForOthers) {
+  EXPECT_THAT(LastOf("+7 +1 +2 +3 +4 +5 +6 +9"), ElementsAre("+7", "+1", "+2", "+3", "+4", "+5", "+6", "+9"));
+  EXPECT_THAT(LastOf("id,t,cov,x,y,z,qx,qy,qz,qw\n0,7,\"(1, 2, 3)\",1,2,3,4,5,6,9"),
+              ElementsAre("7", "1", "2", "3", "4", "5", "6", "9"));
+  for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
+           {"id,t,cov,x,y,z,qx,qy,qz,qw\n0,7,(1,2,3),1,2,3,4,5,6,9", "names 10 columns, and this row has 12"},
+           {"stamp,p1,p2,p3,q1,q2,q3,q4\n7,1,2,3,1,0,0,0", "names no columns of a pose"},
+           {"a b c d e f g h\n7 1 2 3 1 0 0 0", "names no columns of a pose"},
+           {"# Zeit, x, y, z, q1, q2, q3, q4\n7,1,2,3,1,0,0,0", "no column for timestamp, qx, qy, qz, qw"},
+           {"Frame,Sub Frame,RX,RY,RZ,TX,TY,TZ\n1,0,0.1,0.2,0.3,0,0,0", "the header names no column"},
+           {"# T_CW, world to camera\n# timestamp tx ty tz qx qy qz qw\n7 1 2 3 0 0 0 1", "invert them"},
+           {"0 1 2 3 0 0 0 1\n50000000 1 2 3 0 0 0 1", "more than 1000 s after the first"}})
+    EXPECT_THAT(LastOf(text), ElementsAre(HasSubstr(words))) << text;
+  EXPECT_EQ(LastOf("# timestamp_ns tx ty tz qx qy qz qw\n0 1 2 3 0 0 0 1\n50000000 1 2 3 0 0 0 1").at(0),
+            "50000000e-9");
+}
+
 }  // namespace
 }  // namespace base
