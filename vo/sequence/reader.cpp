@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -66,6 +67,10 @@ ListFormat FormatOf(const fs::path& folder, int camera) {
                 "a time stamp in seconds or the number of a frame",
                 "stamp depth-file stamp image-file, or stamp image-file stamp depth-file"};
     }
+    for (const char* images : {"image_0", "image_2"}) {  // KITTI's left cameras, grey and colour
+      if (fs::exists(folder / "times.txt") && fs::is_directory(folder / images))
+        return {folder / "times.txt", folder / images, 1, StampInSeconds, "a time in seconds", "time"};
+    }
     if (fs::exists(folder / "mav0")) {
       const fs::path of = folder / ("mav0/cam" + std::to_string(camera));
       return {of / "data.csv", of / "data", 2, StampInNanoseconds, "a time stamp in nanoseconds", "timestamp,filename"};
@@ -80,6 +85,12 @@ bool IsDepth(const fs::path& file) {
   std::ifstream(file, std::ios::binary).read(head.data(), head.size());
   constexpr int kBits = 24, kColour = 25;
   return std::string_view(head.data(), 4) == "\x89PNG" && head[kBits] == 16 && head[kColour] == 0;
+}
+
+// Of the picture in KITTI's line `index`.
+std::string NumberedName(std::size_t index) {
+  const std::string digits = std::to_string(index);
+  return std::string(6 - std::min<std::size_t>(6, digits.size()), '0') + digits + ".png";
 }
 
 // A file's name as lists have it, those made on Windows too.
@@ -187,9 +198,10 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
     }
     if (!entries_.empty() && *stamp_ns <= entries_.back().stamp_ns)
       complain("time stamp " + stamp + " does not increase over line " + std::to_string(last_number));
-    const fs::path image = format.images / NameOf(words[of_image]);
+    const bool is_numbered = format.words == 1;
+    const fs::path image = format.images / (is_numbered ? NumberedName(entries_.size()) : NameOf(words[of_image]));
     std::error_code error;  // a name that is too long is reported like other problems
-    if (of_image == 0) {
+    if (of_image == 0 && !is_numbered) {
       complain("both pictures are depth (grey of 16 bits)");
     } else if (images == Images::needed && !fs::is_regular_file(image, error)) {
       complain("image " + image.string() + " is not there");
@@ -201,6 +213,12 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
   if (format.stamp == StampInNanoseconds && problems.empty() && entries_.size() > 1 &&
       entries_[1].stamp_ns - entries_[0].stamp_ns < kShortest_ns)
     problems.push_back(list.string() + ": the first frames are less than a millisecond apart: stamps are nanoseconds");
+  constexpr std::int64_t kLongest_ns = 10'000'000'000;
+  const auto is_far = [](const Entry& a, const Entry& b) { return b.stamp_ns - a.stamp_ns >= kLongest_ns; };
+  if (problems.empty() && entries_.size() > 1 &&
+      std::ranges::adjacent_find(entries_, std::not_fn(is_far)) == entries_.end())
+    problems.push_back(list.string() + ": all frames are 10 s and more apart: stamps are " +
+                       (format.stamp == StampInNanoseconds ? "nanoseconds" : "seconds"));
   if (problems.empty() && entries_.empty()) problems.push_back(list.string() + ": no frames");
   if (!problems.empty()) throw std::runtime_error(base::JoinProblems(problems));
 }

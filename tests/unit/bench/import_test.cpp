@@ -250,6 +250,9 @@ TEST(ImportTest, UrdfLinksAndColours) {
   const ImportedWorld grey = ReadSdf(folder.Write("t.urdf", UrdfOf(UrdfBox("b", "", textured))), {}, folder / "shapes");
   EXPECT_NEAR(grey.world.meshes.at(1).color.value().r, sim::SrgbToLinear(0.7), 1e-6);
   EXPECT_THAT(grey.warnings, testing::ElementsAre(HasSubstr("a texture of URDF is left out")));
+  const std::string unknown = UrdfOf(UrdfBox("b", "", "<material name='nowhere'/>"));
+  EXPECT_THAT(ReadSdf(folder.Write("u.urdf", unknown), {}, folder / "shapes").warnings,
+              testing::ElementsAre(HasSubstr("u.urdf:1: 'nowhere': a material without a color is left out")));
 }
 
 TEST(ImportTest, UrdfThatCannotBeReadIsRefused) {
@@ -266,6 +269,9 @@ TEST(ImportTest, UrdfThatCannotBeReadIsRefused) {
   EXPECT_THAT(problem(UrdfOf(UrdfBox("b", turned))), HasSubstr("r.urdf: of its 3 visuals only "));
   EXPECT_THAT(problem(UrdfOf("\n<xacro:wheel name='b'/>")), HasSubstr("r.urdf:2: is xacro, not URDF: expand it"));
   EXPECT_THAT(problem(UrdfOf(UrdfBox("${name}", ""))), HasSubstr("is xacro"));
+  for (const std::string rgba : {"1 0 0", "255 0 0 1", "red"})
+    EXPECT_THAT(problem(UrdfOf(UrdfBox("b", "", "\n<material name='m'><color rgba='" + rgba + "'/></material>"))),
+                HasSubstr("r.urdf:2: rgba=\"" + rgba + "\": expected four numbers from 0 to 1"));
 }
 
 TEST(ImportTest, ModelConfigNamesTheVersion) {
@@ -301,6 +307,23 @@ TEST(ImportTest, WhatIsLeftOutIsSaid) {
   EXPECT_EQ(world.lights.size(), 1u) << "the ambient one";
   EXPECT_THAT(world.warnings, testing::UnorderedElementsAre(HasSubstr("worlds after the first"), HasSubstr("<state>"),
                                                             HasSubstr("emission is not rendered")));
+}
+
+TEST(ImportTest, WhatThePictureDoesNotShowIsSaid) {
+  const Folder folder;
+  const std::string clear =
+      "<material><diffuse>1 0 0 0.2</diffuse><pbr><metal><normal_map>n.png</normal_map></metal></pbr>"
+      "</material><cast_shadows>false</cast_shadows>";
+  const std::string scene = "<scene><shadows>false</shadows><fog><type>linear</type></fog></scene>";
+  const std::string visual = Visual("<ellipsoid><radii>1 2 3</radii></ellipsoid>", clear);
+  const ImportedWorld world =
+      ReadSdf(folder.Write("world.sdf", World(scene + Model("m", "0 0 0 0 0 0", visual))), {}, folder / "shapes");
+  EXPECT_THAT(world.warnings, testing::UnorderedElementsAre(
+                                  HasSubstr("transparency"), HasSubstr("casts a shadow all the same"),
+                                  HasSubstr("<shadows> is false"), HasSubstr("<fog>"), HasSubstr("maps of normals")));
+  EXPECT_EQ(world.world.meshes.at(0).stretch, glm::dvec3(1, 2, 3));
+  for (const char* shape : {"<sphere><radius>-1</radius></sphere>", "<box><size>0 1 1</size></box>"})
+    EXPECT_THAT(ErrorOf(folder, World(Model("m", "0 0 0 0 0 0", Visual(shape)))), HasSubstr("its shape has a size of"));
 }
 
 TEST(ImportTest, MaterialsOfScripts) {

@@ -64,6 +64,26 @@ TEST_F(Reader, ReadsTheOriginalIclNuimLayout) {
   EXPECT_EQ(reader.Next()->stamp_ns, 66666667);
 }
 
+TEST_F(Reader, ReadsTheLayoutOfKitti) {
+  fs::create_directories(folder_ / "image_2");
+  fs::rename(folder_ / "rgb/a.png", folder_ / "image_2/000000.png");
+  fs::rename(folder_ / "rgb/b.png", folder_ / "image_2/000001.png");
+  std::ofstream(folder_ / "times.txt") << "0.000000e+00\n1.037359e-01\n";
+  vo::SequenceReader reader(folder_);
+  EXPECT_EQ(reader.Next()->image.type(), CV_8UC3);
+  EXPECT_EQ(reader.Next()->stamp_ns, 103735900);
+  std::ofstream(folder_ / "times.txt", std::ios::app) << "0.2 x\n0.3\n";
+  EXPECT_NE(ErrorOfOpening().find("times.txt:3: expected 'time'"), std::string::npos) << ErrorOfOpening();
+  EXPECT_NE(ErrorOfOpening().find("image_2/000002.png is not there"), std::string::npos) << ErrorOfOpening();
+}
+
+TEST_F(Reader, RefusesStampsInOtherUnits) {
+  List("0 rgb/a.png\n33 rgb/b.png\n");
+  EXPECT_NE(ErrorOfOpening().find("10 s and more apart: stamps are seconds"), std::string::npos) << ErrorOfOpening();
+  List("0 rgb/a.png\n33 rgb/b.png\n34 rgb/b.png\n");
+  EXPECT_EQ(ErrorOfOpening(), "") << "a gap";
+}
+
 TEST_F(Reader, ReadsTheLayoutOfEuroc) {
   fs::create_directories(folder_ / "mav0/cam0/data");
   fs::rename(folder_ / "rgb/a.png", folder_ / "mav0/cam0/data/1403636579763555584.png");

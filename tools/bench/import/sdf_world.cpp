@@ -193,6 +193,8 @@ class Reader {
     if (scene.Sky() != nullptr)
       result_.lights.emplace_back("{type: sky, zenith: [0.2, 0.35, 0.8], horizon: [0.7, 0.75, 0.9]}");
     result_.background = Linear(scene.Background());
+    if (in.Scene() != nullptr && in.Scene()->Element()->HasElement("fog")) warnings_.Add("", "a <fog> is left out");
+    if (!scene.Shadows()) warnings_.Add("", "<shadows> is false: there are shadows all the same");
     for (std::uint64_t i = 0; i < in.ModelCount(); ++i)
       ReadModel(*in.ModelByIndex(i), Pose::Zero, in.ModelByIndex(i)->Name());
     for (std::uint64_t i = 0; i < in.LightCount(); ++i) ReadLight(*in.LightByIndex(i), Pose::Zero);
@@ -253,6 +255,8 @@ class Reader {
       shape("box.obj", Vector(box->Size()));
     } else if (const auto* sphere = geometry.SphereShape()) {
       shape("sphere.obj", glm::dvec3(sphere->Radius()));
+    } else if (const auto* ellipsoid = geometry.EllipsoidShape()) {
+      shape("sphere.obj", Vector(ellipsoid->Radii()));
     } else if (const auto* cylinder = geometry.CylinderShape()) {
       shape("cylinder.obj", {cylinder->Radius(), cylinder->Radius(), cylinder->Length()});
     } else if (const auto* plane = geometry.PlaneShape()) {
@@ -271,9 +275,14 @@ class Reader {
     } else {
       return warnings_.Add(who, kUnknownShape);
     }
+    if (const glm::dvec3& s = mesh.stretch; geometry.MeshShape() == nullptr && !(std::min({s.x, s.y, s.z}) > 0))
+      Reject(visual.Element()->FilePath(), visual.Element()->LineNumber(),
+             fmt::format("{}its shape has a size of {}", who, std::min({s.x, s.y, s.z})));
     if (const sdf::Material* material = visual.Material()) ReadMaterial(*material, who, mesh);
     if (!mesh.texture.empty()) AddFolder(mesh.texture.parent_path());
-    if (visual.Transparency() > 0) warnings_.Add(who, "transparency is not rendered: it is opaque");
+    if (visual.Transparency() > 0 || (visual.Material() != nullptr && visual.Material()->Diffuse().A() < 1))
+      warnings_.Add(who, "transparency is not rendered: it is opaque");
+    if (!visual.CastShadows()) warnings_.Add(who, "it casts a shadow all the same");
     mesh.position = kYUp * Vector(pose.Pos());
     mesh.orientation = glm::normalize(kYUp * Quaternion(pose.Rot()) * turn);
     result_.world.meshes.push_back(mesh);
@@ -284,7 +293,11 @@ class Reader {
     if (in.Element()->HasElement("diffuse")) mesh.color = Linear(in.Diffuse());
     for (const auto type : {sdf::PbrWorkflowType::METAL, sdf::PbrWorkflowType::SPECULAR}) {
       const auto* flow = in.PbrMaterial() == nullptr ? nullptr : in.PbrMaterial()->Workflow(type);
-      if (flow == nullptr || flow->AlbedoMap().empty()) continue;
+      if (flow == nullptr) continue;
+      if (!(flow->NormalMap() + flow->RoughnessMap() + flow->MetalnessMap() + flow->GlossinessMap()).empty())
+        warnings_.Add(who, "maps of normals, roughness and metalness are left out");
+      WarnOfEmission(!flow->EmissiveMap().empty(), who);
+      if (flow->AlbedoMap().empty()) continue;
       mesh.texture = Require(flow->AlbedoMap(), in.FilePath(), in.Element());
       if (!in.Element()->HasElement("diffuse")) mesh.color = glm::dvec3(1);
     }

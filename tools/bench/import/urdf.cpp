@@ -4,6 +4,7 @@
 #include <tinyxml2.h>
 
 #include <glm/vec4.hpp>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -47,14 +48,28 @@ std::string ReadableUrdf(const fs::path& file, tinyxml2::XMLDocument& xml, std::
     if (material->FirstChildElement("color") == nullptr)
       material->InsertNewChildElement("color")->SetAttribute("rgba", "0.7 0.7 0.7 1");
   }
-  ForEachElement(*xml.RootElement(), [](tinyxml2::XMLElement& element) {
-    std::istringstream numbers(std::string(element.Name()) == "color" && element.Attribute("rgba") != nullptr
-                                   ? element.Attribute("rgba")
-                                   : "");
-    if (glm::dvec4 c; numbers >> c.r >> c.g >> c.b >> c.a) {  // libsdformat divides by 0.8
-      c *= glm::dvec4(0.8, 0.8, 0.8, 1);
-      element.SetAttribute("rgba", fmt::format("{} {} {} {}", c.r, c.g, c.b, c.a).c_str());
+  std::set<std::string> materials;
+  ForEachElement(*xml.RootElement(), [&](tinyxml2::XMLElement& element) {
+    const char* const rgba = element.Attribute("rgba");
+    if (std::string_view(element.Name()) == "material" && element.FirstChildElement("color") != nullptr)
+      materials.insert(element.Attribute("name") == nullptr ? "" : element.Attribute("name"));
+    if (std::string_view(element.Name()) != "color" || rgba == nullptr) return;
+    std::istringstream numbers(rgba);
+    glm::dvec4 c;
+    const bool has_all = static_cast<bool>(numbers >> c.r >> c.g >> c.b >> c.a);
+    for (int i = 0; i < 4; ++i) {
+      if (!has_all || !(c[i] >= 0 && c[i] <= 1))
+        throw std::runtime_error(fmt::format("{}:{}: rgba=\"{}\": expected four numbers from 0 to 1", file.string(),
+                                             element.GetLineNum(), rgba));
     }
+    c *= glm::dvec4(0.8, 0.8, 0.8, 1);  // libsdformat divides by 0.8
+    element.SetAttribute("rgba", fmt::format("{} {} {} {}", c.r, c.g, c.b, c.a).c_str());
+  });
+  ForEachElement(*xml.RootElement(), [&](tinyxml2::XMLElement& element) {
+    const char* const name = element.Attribute("name");
+    if (std::string_view(element.Name()) == "material" && name != nullptr && !materials.contains(name))
+      warnings.Add(fmt::format("{}:{}: '{}': ", file.string(), element.GetLineNum(), name),
+                   "a material without a color is left out: grey");
   });
   for (tinyxml2::XMLElement* visual : unknown) visual->Parent()->DeleteChild(visual);
   for (auto* link = xml.RootElement()->FirstChildElement("link"); link; link = link->NextSiblingElement("link")) {
