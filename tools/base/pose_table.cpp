@@ -98,7 +98,7 @@ std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
   if (is_first_ && problem.empty()) problem = OtherKind(line, words, Stamp(words[0]));
   constexpr std::int64_t kLongest_ns = 1'000'000'000'000;
   const std::optional<std::int64_t> stamp_ns = ParseSeconds(Stamp(words[0]));
-  if (first_ns_ && stamp_ns && problem.empty() && *stamp_ns - *first_ns_ > kLongest_ns)
+  if (first_ns_ && stamp_ns && problem.empty() && *stamp_ns - *first_ns_ > kLongest_ns && ParseWhole(Stamp(words[0])))
     problem = "time " + Stamp(words[0]) + " is more than 1000 s after the first: write seconds, or name the unit (" +
               "timestamp_ns)";
   first_ns_ = is_first_ ? stamp_ns : std::nullopt;
