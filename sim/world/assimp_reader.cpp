@@ -331,7 +331,7 @@ void ReadByAssimp(MeshFiles& files, MeshImport& import) {
   const std::string extension = LowerExtension(files.mesh());
   if (extension == ".fbx") import.warnings = FbxWarnings(files.Read(files.mesh()).value_or(""));
   Assimp::Importer importer;
-  importer.SetIOHandler(new ImporterFiles(files, import));  // the importer owns it
+  importer.SetIOHandler(new ImporterFiles(files, import));              // the importer owns it
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // which would stand for joints
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
   const aiScene* scene = importer.ReadFile(files.mesh().string(), aiProcess_ValidateDataStructure);
