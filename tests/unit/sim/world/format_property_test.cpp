@@ -325,8 +325,9 @@ struct ColladaFile {
   }
 };
 
-// form (text; text, "SOLID" and signs; binary; binary with "solid" in its header), normals (right, turned over, zero, not
-// a number), colours (none, VisCAM's, Magics', Magics' object) of binary forms, solids of text forms, line end, name
+// form (text; text, "SOLID" and signs; binary; binary with "solid" in its header), normals (right, turned over, zero,
+// not a number), colours (none, VisCAM's, Magics', Magics' object) of binary forms, solids of text forms, line end,
+// name
 constexpr std::array kStlCounts = {4, 4, 4, 2, 2, 2};
 
 struct StlFile {
@@ -470,7 +471,8 @@ struct X3dFile {
 };
 
 // unit in centimetres (1, 100, 2.54), up axis (y, z), normals, texture coordinates (none, one set, the second of two),
-// colours, mapping of each (of corners: direct, by index; of vertices: direct, by index), materials of faces, model (none, turned, turned with a pivot, moved geometry), sides
+// colours, mapping of each (of corners: direct, by index; of vertices: direct, by index), materials of faces, model
+// (none, turned, turned with a pivot, moved geometry), sides
 constexpr std::array kFbxCounts = {3, 2, 2, 3, 2, 4, 2, 4, 3};
 
 struct FbxFile {
