@@ -106,6 +106,9 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
                 "  - {name: ns, command: \"" +
                 poses +
                 " | sed 's/[.]//' > {trajectory}\"}\n"
+                "  - {name: ms, command: \"" +
+                poses +
+                " | sed -E 's/[.]([0-9]{3})/\\\\1./' > {trajectory}\"}\n"
                 "  - {name: ends, command: \"" +
                 poses +
                 " | head -9 > {trajectory}\"}\n"
@@ -120,7 +123,7 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
                 " | sed '12s/^[^ ]*/99.5/' > {trajectory}\"}\n"
                 "  - {name: skips_three, command: \"tail -n +4 {sequence}/rgb.txt | wc -l; " +
                 poses + " > {trajectory}\"}\n");
-  MustRun(CampaignOf("[key, few, nan, ns, ends, at_exit, forgiven, later, skips_three]") + "keep: all\n", "out");
+  MustRun(CampaignOf("[key, few, nan, ns, ms, ends, at_exit, forgiven, later, skips_three]") + "keep: all\n", "out");
   auto rows = BySystem(Results("out"));
   EXPECT_EQ(rows["key"]["status"], "ok") << "judged at its stamps";
   EXPECT_EQ(rows["key"]["pose_coverage"], "0.25") << "and this is said";
@@ -129,21 +132,25 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
   EXPECT_EQ(rows["nan"]["status"], "ok");
   EXPECT_EQ(rows["nan"]["reason"], "lines without a finite pose, left out: 1");
   EXPECT_EQ(rows["ns"]["status"], "no_answer");
-  EXPECT_THAT(rows["ns"]["reason"], testing::EndsWith(": divide the times by 1e9"));
+  EXPECT_THAT(rows["ns"]["reason"],
+              testing::EndsWith(":2:1: time 0033333333 is more than 1000 s after the first: write seconds, or name the "
+                                "unit (timestamp_ns)"));
+  EXPECT_EQ(rows["ms"]["status"], "no_answer");
+  EXPECT_THAT(rows["ms"]["reason"], testing::EndsWith(": divide the times by 1e3"));
   EXPECT_EQ(rows["ends"]["status"], "ok");
   EXPECT_EQ(rows["ends"]["reason"], "no pose after the first 9 of 12 frames");
   EXPECT_EQ(rows["at_exit"]["status"], "crashed");
   EXPECT_EQ(rows["at_exit"]["reason"],
             "ended by signal 11 (Segmentation fault); a trajectory with all 12 frames is there (`accept_exit: any` "
             "counts it) "
-            "(tasks/00/000005/log.txt)");
+            "(tasks/00/000006/log.txt)");
   EXPECT_EQ(rows["forgiven"]["status"], "ok");
   EXPECT_EQ(rows["forgiven"]["reason"],
             "ended by signal 11 (Segmentation fault), accepted; no pose after the first 9 of 12 frames");
   EXPECT_EQ(rows["later"]["reason"], "poses at no frame's time: 1");
-  EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000008/log.txt"), "12\n") << "three comments, as TUM's lists have";
+  EXPECT_EQ(ReadFile(here_ / "out/tasks/00/000009/log.txt"), "12\n") << "three comments, as TUM's lists have";
   EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000000/work/trajectory.txt"));
-  EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000005/work/trajectory.txt"));
+  EXPECT_TRUE(fs::exists(here_ / "out/tasks/00/000006/work/trajectory.txt"));
   const std::string tables = ReadFile(here_ / "out/tables.md");
   EXPECT_THAT(tables, HasSubstr("key (key frames)"));
   EXPECT_THAT(tables, HasSubstr("| few | 1 | lost | 25 % | a pose in 25.0 % of the frames"));
