@@ -53,6 +53,9 @@ void ReadEuroc(settings::Section section, const std::string& lens_key, Camera& c
     camera.cy = intrinsics[3];
     if (!(camera.fx > 0 && camera.fy > 0)) section.Reject("intrinsics", "'intrinsics': fu and fv must be positive");
   }
+  double line_delay_s = 0;  // from row to row, of Kalibr's calibration of rolling shutters
+  if (section.Read("line_delay", line_delay_s, settings::Unit::none, settings::Range{-1e-3, 1e-3}))
+    camera.readout_s = line_delay_s * (camera.height - 1);
   std::vector<double> coefficients;
   if (!(none ? section.Read(lens_key, coefficients) : section.Require(lens_key, coefficients))) return;
   if (none && std::ranges::any_of(coefficients, [](double k) { return k != 0; }))
@@ -91,6 +94,7 @@ void RejectOtherValues(settings::Section root, const Camera& camera) {
   const Camera& c = camera;
   const bool fisheye = c.lens == Lens::fisheye;
   const double width = c.width, height = c.height;
+  const std::vector<double> lens = fisheye ? std::vector{c.k1, c.k2, c.k3, c.k4} : std::vector{c.k1, c.k2, c.p1, c.p2};
   const std::vector<std::pair<const char*, std::vector<double>>> all = {{"fx", {c.fx}},
                                                                         {"fy", {c.fy}},
                                                                         {"cx", {c.cx}},
@@ -108,7 +112,9 @@ void RejectOtherValues(settings::Section root, const Camera& camera) {
                                                                         {"image_height", {height}},
                                                                         {"image_size", {width, height}},
                                                                         {"resolution", {width, height}},
-                                                                        {"intrinsics", {c.fx, c.fy, c.cx, c.cy}}};
+                                                                        {"intrinsics", {c.fx, c.fy, c.cx, c.cy}},
+                                                                        {"distortion_coeffs", lens},
+                                                                        {"distortion_coefficients", lens}};
   for (const auto& [key, ours] : all) {
     std::vector<settings::RawYaml> texts;
     if (!root.Has(key) || !root.ReadRaw(key, texts)) continue;
@@ -232,7 +238,7 @@ Camera CameraOfText(std::string_view text, const std::filesystem::path& file) {
     refuse();
   }
   document.ThrowIfBad();
-  RejectOtherValues(root, camera);
+  RejectOtherValues(first != kOfAChain.end() ? root.Child(*first) : root, camera);
   document.ThrowIfBad();
   return camera;
 }

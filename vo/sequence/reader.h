@@ -1,6 +1,7 @@
 // Reader of image sequences: TUM RGB-D layout (docs/sequence_format.md); ICL-NUIM's original layout (associations.txt,
 // `index file index file`, the depth first or last, stamp = index / 30 s); EuRoC (mav0/cam0/data.csv, `stamp in
-// ns,filename`); KITTI's odometry (times.txt, a time a line, and image_0 or image_2, NNNNNN.png).
+// ns,filename`); KITTI's odometry (times.txt, a time a line, and image_0 or image_2, NNNNNN.png); TUM's monocular data
+// set (times.txt, `number time exposure`, and images/NUMBER.jpg).
 #pragma once
 
 #include <cstddef>

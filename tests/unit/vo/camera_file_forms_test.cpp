@@ -148,12 +148,19 @@ TEST_F(CameraFileForms, Kalibr) {
            other + "\ncam1:\n  cam_overlaps: *id001\n";
   };
   const std::string coefficients = "\n  distortion_coeffs: " + kLens;
-  Expect({{"alias.yaml", chain("pinhole", "radtan", coefficients)},
-          {"omni.yaml", Replaced(chain("omni", "radtan", coefficients), "[458.5", "[1.9, 458.5"),
-           "the camera model 'omni'"},
-          {"fov.yaml", chain("pinhole", "fov", "\n  distortion_coeffs: [0.9]"), "calibrate a pinhole with a radtan"},
-          {"none.yaml", chain("pinhole", "none", coefficients), "'distortion_coeffs' must be 0 where"},
-          {"none.yaml", chain("pinhole", "equidistant", "\n  distortion_coeffs: []"), "there are 0 numbers"}});
+  Expect(
+      {{"alias.yaml", chain("pinhole", "radtan", coefficients)},
+       {"omni.yaml", Replaced(chain("omni", "radtan", coefficients), "[458.5", "[1.9, 458.5"),
+        "the camera model 'omni'"},
+       {"fov.yaml", chain("pinhole", "fov", "\n  distortion_coeffs: [0.9]"), "calibrate a pinhole with a radtan"},
+       {"none.yaml", chain("pinhole", "none", coefficients), "'distortion_coeffs' must be 0 where"},
+       {"none.yaml", chain("pinhole", "equidistant", "\n  distortion_coeffs: []"), "there are 0 numbers"},
+       {"fx.yaml", chain("pinhole", "radtan", coefficients + "\n  fx: 900"), "'fx' has 900 where the rest has 458.5"},
+       {"both.yaml",
+        chain("pinhole", "radtan", coefficients + "\n  distortion_coefficients: " + Replaced(kLens, "-0.25", "0.25")),
+        "'distortion_coefficients' has 0.25 where the rest has -0.25"}});
+  const std::string rolls = chain("pinhole", "radtan", coefficients + "\n  line_delay: 5e-05");
+  EXPECT_NEAR(vo::ReadCamera(folder_.Write("rolls.yaml", rolls).string()).readout_s.value_or(0), 479 * 5e-5, 1e-12);
 }
 
 TEST_F(CameraFileForms, SlamPrograms) {

@@ -77,6 +77,21 @@ TEST_F(Reader, ReadsTheLayoutOfKitti) {
   EXPECT_NE(ErrorOfOpening().find("image_2/000002.png is not there"), std::string::npos) << ErrorOfOpening();
 }
 
+TEST_F(Reader, ReadsTheLayoutOfTumsMonocularDataSet) {
+  fs::create_directories(folder_ / "images");
+  fs::rename(folder_ / "rgb/a.png", folder_ / "images/00000.png");
+  fs::rename(folder_ / "rgb/b.png", folder_ / "images/00002.jpg");
+  std::ofstream(folder_ / "times.txt") << "00000 1435148236.344000 1.67\n00002 1435148236.424000\n";
+  vo::SequenceReader reader(folder_);
+  EXPECT_EQ(reader.Next()->stamp_ns, 1435148236344000000);
+  EXPECT_EQ(reader.Next()->stamp_ns, 1435148236424000000) << "of an unknown exposure";
+  std::ofstream(folder_ / "times.txt", std::ios::app) << "00003\n00004 x\n00005 1435148237 1\n";
+  const std::string error = ErrorOfOpening();
+  EXPECT_NE(error.find("times.txt:3: expected 'number time exposure'"), std::string::npos) << error;
+  EXPECT_NE(error.find("times.txt:4: 'x' is not a time in seconds"), std::string::npos) << error;
+  EXPECT_NE(error.find("images/00005.jpg is not there"), std::string::npos) << error;
+}
+
 TEST_F(Reader, RefusesStampsInOtherUnits) {
   List("0 rgb/a.png\n33 rgb/b.png\n");
   EXPECT_NE(ErrorOfOpening().find("10 s and more apart: stamps are seconds"), std::string::npos) << ErrorOfOpening();
