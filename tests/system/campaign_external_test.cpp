@@ -108,7 +108,7 @@ TEST_F(CampaignTest, PeculiarProgramsAreJudgedAsWhatTheyAre) {
                 " | sed 's/[.]//' > {trajectory}\"}\n"
                 "  - {name: ms, command: \"" +
                 poses +
-                " | sed -E 's/[.]([0-9]{3})/\\\\1./' > {trajectory}\"}\n"
+                " | sed -E 's/[.]([0-9][0-9][0-9])/\\\\1./' > {trajectory}\"}\n"
                 "  - {name: ends, command: \"" +
                 poses +
                 " | head -9 > {trajectory}\"}\n"
