@@ -72,7 +72,8 @@ void AppendPolygons(const Polygons& polygons, const PolygonPools& pools, const g
 void ScaleColors(PolygonPools& pools, std::vector<std::string>& warnings) {
   float largest = 0;
   for (const glm::vec4& c : pools.colors) largest = std::max({largest, c.r, c.g, c.b});
-  if (!(largest > 1)) return;
+  constexpr float kRounded = 1.001F;  // of 1, after sums of colours
+  if (!(largest > kRounded)) return;
   const float white = largest > 255 ? 65535.0f : 255.0f;
   warnings.push_back("vertex colours go beyond 1: they are taken as 0 ... " + std::to_string(static_cast<int>(white)));
   for (glm::vec4& c : pools.colors) c = glm::vec4(c.r / white, c.g / white, c.b / white, 1);

@@ -236,7 +236,7 @@ class PlyReader {
     if (e.Find({"material_index"}) >= 0)
       import_.warnings.push_back("materials of its faces (material_index) are not read: they are white");
     if (e.Find({"color"}) >= 0) import_.warnings.push_back("colours of its faces' corners (color) are not read");
-    if (list < 0) return ForEachRow(e, [](const Row&) {});
+    if (list < 0 && e.count > 0) throw std::runtime_error("its faces have no list vertex_indices or vertex_index");
     ForEachRow(e, [&](const Row& row) {
       const std::vector<double>& vertices = row[static_cast<std::size_t>(list)];
       if (vertices.size() < 3) return;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -125,6 +127,13 @@ struct Parameters {
 
 }  // namespace
 
+// The first material in assimp's order, which meshes have that name none.
+constexpr std::string_view kDefaultMaterial =
+    "<library_effects><effect id=\"!effect\"><profile_COMMON><technique sid=\"common\"><lambert><diffuse>"
+    "<color>1 1 1 1</color></diffuse></lambert></technique></profile_COMMON></effect></library_effects>"
+    "<library_materials><material id=\"!\" name=\"none\"><instance_effect url=\"#!effect\"/></material>"
+    "</library_materials>";
+
 std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& warnings) {
   const UvSets sets = SetsOf(text);
   bool any_weight = false;
@@ -151,6 +160,7 @@ std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& wa
   Parameters parameters;
   bool has_diffuse = false, has_emission = false;  // of the shader at hand
   bool is_morph = false;                           // the controller at hand
+  bool has_default = false;
   ForEachTag(text, [&](std::string_view tag) {
     if (IsTag(tag, "<skew") || tag == "<skew")
       throw std::runtime_error("it has a <skew>, which is not read: export it with <matrix>, or as .glb");
@@ -160,6 +170,10 @@ std::string ColladaForAssimp(std::string_view text, std::vector<std::string>& wa
       if (tag.starts_with("<" + shader)) has_diffuse = has_emission = false;
       if (!tag.starts_with("</" + shader) || has_diffuse || !has_emission) continue;
       replace(tag.substr(0, 0), "<diffuse><color>0 0 0 1</color></diffuse>");  // assimp's default is 0.6
+    }
+    if (!has_default && (tag == "<library_visual_scenes" || IsTag(tag, "<library_visual_scenes"))) {
+      replace(tag.substr(0, 0), kDefaultMaterial);
+      has_default = true;
     }
     parameters.Read(text, tag);
     const auto whole = static_cast<std::size_t>(tag.data() - text.data()), end = whole + tag.size() + 1;
@@ -311,16 +325,72 @@ std::string WithOwnCorners(std::string_view text, std::string_view tag, std::str
   return out + "</IndexedFaceSet";
 }
 
+// An attribute of one number, or its default.
+double NumberOr(std::string_view tag, const std::string& name, double value) {
+  return base::ParseNumber(Attribute(tag, name)).value_or(value);
+}
+
+// A Cone as a set of faces with its apex up: assimp's is upside down.
+std::string FacesOfCone(std::string_view tag) {
+  constexpr int kSides = 32;
+  const double radius = NumberOr(tag, "bottomRadius", 1), top = NumberOr(tag, "height", 2) / 2;
+  std::string points = "0 " + std::to_string(top) + " 0 ", sides, bottom;
+  for (int i = 0; i < kSides; ++i) {
+    const double turn = 2 * std::numbers::pi * i / kSides;
+    points += std::to_string(radius * std::sin(turn)) + " " + std::to_string(-top) + " " +
+              std::to_string(radius * std::cos(turn)) + " ";
+    sides += "0 " + std::to_string(i + 1) + " " + std::to_string((i + 1) % kSides + 1) + " -1 ";
+    bottom += std::to_string(kSides - i) + " ";
+  }
+  return "<IndexedFaceSet coordIndex='" + (Attribute(tag, "side") == "false" ? "" : sides) +
+         (Attribute(tag, "bottom") == "false" ? "" : bottom + "-1") + "'><Coordinate point='" + points +
+         "'/></IndexedFaceSet";
+}
+
+// Whether an attribute has a number other than this one.
+bool HasOther(std::string_view tag, const std::string& name, double number) {
+  const std::vector<std::string_view> numbers = NumbersOf(Attribute(tag, name));
+  return std::ranges::any_of(numbers, [&](std::string_view text) { return base::ParseNumber(text) != number; });
+}
+
 }  // namespace
 
 std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnings) {
   std::string out;
   std::size_t done = 0;
   bool has_copies = false, has_files = false, has_textures = false, has_turns = false;
+  double unit = 1;
   std::set<std::string> left_out;
   ForEachTag(text, [&](std::string_view tag) {
     const auto begin_of_tag = static_cast<std::size_t>(tag.data() - text.data()),
                end_of_tag = begin_of_tag + tag.size() + 1;
+    const auto replace = [&](std::size_t begin, std::size_t end, std::string_view by) {
+      if (begin < done) return;
+      out.append(text.substr(done, begin - done)).append(by);
+      done = std::min(end, text.size());
+    };
+    if (IsTag(tag, "<unit") && Attribute(tag, "category") == "length") unit = NumberOr(tag, "conversionFactor", 1);
+    const std::string scale = std::to_string(unit) + " ";
+    if (unit != 1 && (tag == "<Scene" || IsTag(tag, "<Scene")))
+      replace(end_of_tag, end_of_tag, "<Transform scale='" + scale + scale + scale + "'>");
+    if (unit != 1 && tag == "</Scene") replace(begin_of_tag, begin_of_tag, "</Transform>");
+    if (IsTag(tag, "<Cone") || tag == "<Cone" || tag == "<Cone/")
+      replace(begin_of_tag, tag.ends_with('/') ? end_of_tag - 1 : text.find("</Cone", end_of_tag) + 6,
+              FacesOfCone(tag));
+    if (IsTag(tag, "<Disk2D") && NumberOr(tag, "innerRadius", 0) != 0)
+      throw std::runtime_error("it has a Disk2D with an innerRadius, which is not read: export it as faces");
+    // Without a material assimp takes another shape's.
+    constexpr std::string_view kWhite = "<Material diffuseColor='1 1 1'/>";
+    for (const std::string node : {"Shape", "Appearance"}) {
+      if ((tag != "<" + node && !IsTag(tag, "<" + node)) || tag.ends_with('/') || end_of_tag < done) continue;
+      const std::string_view inside =
+          text.substr(end_of_tag, std::min(text.find("</" + node, end_of_tag), text.size()) - end_of_tag);
+      const bool is_shape = node == "Shape";
+      if (inside.find(is_shape ? "<Appearance" : "<Material") != std::string_view::npos) continue;
+      if (is_shape || inside.find("Texture") == std::string_view::npos)
+        replace(end_of_tag, end_of_tag,
+                is_shape ? "<Appearance>" + std::string(kWhite) + "</Appearance>" : std::string(kWhite));
+    }
     // On an IndexedLineSet assimp does not end.
     for (const std::string node : {"IndexedFaceSet", "IndexedTriangleSet", "TriangleSet", "IndexedLineSet"}) {
       if (!IsTag(tag, "<" + node) || tag.ends_with('/') || begin_of_tag < done) continue;
@@ -359,9 +429,10 @@ std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnin
           "GeoElevationGrid", "HAnimHumanoid", "QuadSet", "IndexedQuadSet", "NurbsPatchSurface", "NurbsTrimmedSurface",
           "NurbsSweptSurface", "ParticleSystem"})
       if (is("<" + node)) left_out.insert(node);
-    has_turns = has_turns || (IsTag(tag, "<TextureTransform") &&
-                              (!Attribute(tag, "rotation").empty() || !Attribute(tag, "center").empty() ||
-                               (!Attribute(tag, "scale").empty() && !Attribute(tag, "translation").empty())));
+    has_turns =
+        has_turns || (IsTag(tag, "<TextureTransform") &&
+                      (HasOther(tag, "rotation", 0) ||
+                       (HasOther(tag, "scale", 1) && (HasOther(tag, "center", 0) || HasOther(tag, "translation", 0)))));
     has_files = has_files || IsTag(tag, "<Inline");
     for (const std::string_view node : {"<Shape", "<Transform", "<Group", "<Switch"})
       has_copies = has_copies || (IsTag(tag, node) && !Attribute(tag, "USE").empty());

@@ -205,7 +205,9 @@ bool StatesRealPartFirst(std::string_view comment) {
 }
 
 bool StatesInverse(std::string_view comment) {
-  return HasAny(Lower(comment), {"world to cam", "world-to-cam", "world_to_cam", "world2cam", "t_cw"});
+  const std::string text = Lower(comment);
+  return HasAny(text, {"world to cam", "world-to-cam", "world_to_cam", "world2cam", "t_cw"}) &&
+         !HasAny(text, {"to world", "to-world", "to_world", "2world", "inverse of"});
 }
 
 std::vector<Word> Cells(std::string_view line) {

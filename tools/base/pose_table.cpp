@@ -1,6 +1,7 @@
 #include "tools/base/pose_table.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <span>
 
@@ -74,8 +75,10 @@ std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
   const auto begins_a_number = [](const Word& word) {
     return IsNumber(word) || (!word.text.empty() && IsDigit(word.text[0]));
   };
-  const bool is_header = is_first_ && words.size() >= kPose && std::ranges::none_of(words, begins_a_number);
-  if (IsComment(words[0].text) || is_header) {
+  const bool is_comment = IsComment(words[0].text), is_prose = line.find_first_of(",;") == std::string_view::npos;
+  const bool is_header =
+      is_first_ && words.size() >= kPose && !(is_comment && is_prose) && std::ranges::none_of(words, begins_a_number);
+  if (is_comment || is_header) {
     if (is_first_) problem = KindOf(line);
     if (is_first_ && problem.empty() && !header_) header_ = ReadPoseHeader(line, problem);
     if (is_header && !header_ && problem.empty())
@@ -90,7 +93,8 @@ std::vector<Word> PoseTable::Row(std::string_view line, std::string& problem) {
   if (is_first_ && !header_ && w_is_first_)
     problem = "a comment says that w comes first: name the columns (# timestamp tx ty tz qw qx qy qz)";
   const auto is_last_row = [](const auto& row) {
-    return row[0].text == "0" && row[1].text == "0" && row[2].text == "0" && row[3].text == "1";
+    constexpr std::array kLast = {0.0, 0.0, 0.0, 1.0};
+    return std::ranges::equal(row, kLast, {}, [](const Word& word) { return ParseNumber(word.text); });
   };
   if (is_first_ && !header_ && words.size() == kMatrix + 1 && is_last_row(std::span(words).last(4)))
     problem = "seventeen numbers a line are times and matrices: write a quaternion (timestamp tx ty tz qx qy qz qw)";
@@ -110,7 +114,10 @@ std::vector<Word> PoseTable::InOrder(std::vector<Word> words, std::string& probl
   if (header_) {
     const std::array<std::size_t, kPose>& columns = header_->columns;
     const bool is_run = header_->is_prose && words.size() != header_->count;
-    const std::size_t first = is_run ? std::ranges::min(columns) : 0;
+    // In prose the pose's names end the line, or other words follow them.
+    const std::size_t pose = std::ranges::min(columns),
+                      others = header_->count - std::min(header_->count, words.size());
+    const std::size_t first = !is_run ? 0 : others > 0 && others <= pose ? others : pose;
     const std::size_t last = std::max(std::ranges::max(columns), header_->fraction.value_or(0));
     const bool is_long = !is_run && header_->count > kPose && words.size() > header_->count;
     if (is_long || words.size() <= last - first) {

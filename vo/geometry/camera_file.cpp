@@ -132,6 +132,17 @@ void RejectOtherValues(settings::Section root, const Camera& camera) {
   }
 }
 
+// JSON with its lines of comments, which cv::FileStorage writes, made empty.
+std::string WithoutComments(std::string_view json) {
+  std::string out;
+  for (std::size_t begin = 0, end = 0; begin < json.size(); begin = end) {
+    end = std::min(json.find('\n', begin), json.size() - 1) + 1;
+    const std::string_view line = json.substr(begin, end - begin);
+    out += line.substr(std::min(line.find_first_not_of(" \t"), line.size())).starts_with("//") ? "\n" : line;
+  }
+  return out;
+}
+
 // First data of the first line that is not a comment.
 std::string_view FirstData(std::string_view text) {
   while (text.starts_with('#') || text.starts_with('\n') || text.starts_with('\r')) {
@@ -206,6 +217,7 @@ Camera CameraOfText(std::string_view text, const std::filesystem::path& file) {
     // Our dialect has no tags and a single document.
     read = settings::Document::FromText(is_xml    ? YamlOfXml(text, file)
                                         : is_ours ? std::string(text)
+                                        : is_json ? PlainYaml(WithoutComments(text))
                                                   : PlainYaml(text),
                                         file.string(), is_ours ? settings::Dialect::ours : settings::Dialect::opencv);
   } catch (const settings::Error&) {

@@ -53,10 +53,6 @@ void ReadOrbSlam(settings::Section root, const std::string& general, const std::
   RequirePinhole(root, prefix, camera);
   if (type == Type::fisheye) camera.lens = Lens::fisheye;
   if (type != Type::rectified) ReadCoefficients(root, prefix, camera);
-  if (root.Has("LEFT.K"))
-    root.Reject("LEFT.K",
-                "'Camera.fx' and so on are of the images that ORB-SLAM rectifies by LEFT.K: where yours are, leave out "
-                "LEFT.* and RIGHT.*; else give the calibration of one camera");
 }
 
 void ReadCamodocal(settings::Section root, Camera& camera) {
@@ -237,6 +233,10 @@ bool ReadSlamCamera(settings::Section root, Camera& camera) {
   } else {
     return false;
   }
+  for (const std::string key : {"LEFT.K", "StereoRectifier.K_left", "StereoRectifier"})
+    if (root.Has(key))
+      root.Reject(key, "'Camera.fx' and so on are of the images that '" + key +
+                           "' rectifies: where yours are, leave it out; else give the calibration of one camera");
   root.IgnoreRest();
   return true;
 }

@@ -200,7 +200,7 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
     const std::string stamp(words[of_stamp].text);
     const auto stamp_ns = format.stamp(stamp);
     if (!stamp_ns) {
-      const std::string unit = format.stamp == StampInSeconds ? base::UnitOfStamp(stamp) : "";
+      const std::string unit = format.stamp != StampInNanoseconds ? base::UnitOfStamp(stamp) : "";
       complain("'" + stamp + "' is not " + format.not_a_stamp + unit);
       if (!unit.empty()) break;  // so are all
       continue;

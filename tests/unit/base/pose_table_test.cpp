@@ -175,6 +175,15 @@ TEST(PoseTable, RowsAndHeadersThatWouldBeTakenForOthers) {
            {"# T_CW, world to camera\n# timestamp tx ty tz qx qy qz qw\n7 1 2 3 0 0 0 1", "invert them"},
            {"0 1 2 3 0 0 0 1\n50000000 1 2 3 0 0 0 1", "more than 1000 s after the first"}})
     EXPECT_THAT(LastOf(text), ElementsAre(HasSubstr(words))) << text;
+  for (const char* comment :
+       {"# This file holds the poses of the left camera in world frame", "// one two three four five six seven eight",
+        "# camera to world (inverse of world-to-camera)"})
+    EXPECT_THAT(LastOf(std::string(comment) + "\n7 1 2 3 4 5 6 9"),
+                ElementsAre("7", "1", "2", "3", "4", "5", "6", "9"));
+  EXPECT_THAT(LastOf("# format: id timestamp tx ty tz qx qy qz qw\n0 7 1 2 3 4 5 6 9"),
+              ElementsAre("7", "1", "2", "3", "4", "5", "6", "9"));
+  EXPECT_THAT(LastOf("0 1.0 0.0 0.0 0.5 0.0 1.0 0.0 0.5 0.0 0.0 1.0 0.5 0.0 0.0 0.000 1.0"),
+              ElementsAre(HasSubstr("seventeen numbers a line are times and matrices")));
   EXPECT_EQ(LastOf("# timestamp_ns tx ty tz qx qy qz qw\n0 1 2 3 0 0 0 1\n50000000 1 2 3 0 0 0 1").at(0),
             "50000000e-9");
 }

@@ -267,6 +267,8 @@ TEST(ImportTest, UrdfThatCannotBeReadIsRefused) {
   };
   const std::string turned = "<visual><origin rpy='0 0'/><geometry><box size='1 1 1'/></geometry></visual>";
   EXPECT_THAT(problem(UrdfOf(UrdfBox("b", turned))), HasSubstr("r.urdf: of its 3 visuals only "));
+  EXPECT_THAT(problem(UrdfOf(UrdfBox("b", "") + UrdfBox("b", ""))),
+              testing::EndsWith("r.urdf: link 'b' is not unique."));
   EXPECT_THAT(problem(UrdfOf("\n<xacro:wheel name='b'/>")), HasSubstr("r.urdf:2: is xacro, not URDF: expand it"));
   EXPECT_THAT(problem(UrdfOf(UrdfBox("${name}", ""))), HasSubstr("is xacro"));
   for (const std::string rgba : {"1 0 0", "255 0 0 1", "red"})

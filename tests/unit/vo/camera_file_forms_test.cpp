@@ -184,6 +184,13 @@ TEST_F(CameraFileForms, SlamPrograms) {
        {"k.yaml", "Camera.type: \"KannalaBrandt8\"\n" + projection + size, "add its Camera.k2, Camera.k3, Camera.k4"},
        {"t.yaml", "Camera.type: \"Fisheye\"\n" + projection + "Camera.k4: 1\n" + size, "'Fisheye' is not known"},
        {"k.json", head + numbers + R"("k2": 0)" + tail, "add its k3, k4"},
+       {"stella.yaml",
+        "Camera.model: \"perspective\"\n" + projection + size + "StereoRectifier:\n  K_left: [1, 0, 0]\n",
+        "'StereoRectifier' rectifies"},
+       {"nested.yaml",
+        "Camera:\n  model: perspective\n" + Replaced(projection + size, "Camera.", "  ") +
+            "StereoRectifier:\n  model: x\n",
+        "'StereoRectifier' rectifies"},
        {"half.json", Replaced(head + numbers + ks + tail, "752", "752.5"), "'resolution' must have"},
        {"none.json", Replaced(head + numbers + ks + tail, "[[752, 480]]", "[]"), "'resolution' must have"}});
 }

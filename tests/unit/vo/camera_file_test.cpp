@@ -353,7 +353,7 @@ TEST_F(CameraFile, OfOrbSlamAsItIsWritten) {
   EXPECT_EQ(ErrorOf(Write("o.yaml", text)),
             (folder_ / "o.yaml").string() + ": has no 'Camera.width' and 'Camera.height': add the size of the images");
   EXPECT_THAT(ErrorOf(Write("o.yaml", text + size + "LEFT.K: !!opencv-matrix\n   rows: 1\n   cols: 1\n   data:[1]\n")),
-              HasSubstr("images that ORB-SLAM rectifies"));
+              HasSubstr("images that 'LEFT.K' rectifies"));
 }
 
 TEST_F(CameraFile, OfNoKnownKindIsOneSentence) {

@@ -85,6 +85,8 @@ class Reader {
     console_bridge::useOutputHandler(&messages);
     Note(urdf_.empty() ? root.Load(file_.string(), config) : root.LoadSdfString(urdf_, config));
     console_bridge::noOutputHandler();
+    if (!problems_.empty() && !urdf_.empty() && !messages.all.empty())  // libsdformat's own has the whole text
+      throw std::runtime_error(file_.string() + ": " + base::Join(messages.all, "; "));
     if (problems_.empty() && root.WorldCount() > 0) ReadWorld(*root.WorldByIndex(0));
     if (root.WorldCount() > 1) warnings_.Add(file_.string() + ": ", "worlds after the first are left out");
     if (problems_.empty() && root.Model() != nullptr) ReadModel(*root.Model(), Pose::Zero, root.Model()->Name());
@@ -92,8 +94,10 @@ class Reader {
       problems_.insert(fmt::format("{}: of its {} visuals only {} can be read{}{}", file_.string(), urdf_visuals_, read,
                                    messages.all.empty() ? "" : ": ", base::Join(messages.all, "; ")));
     if (!problems_.empty()) throw std::runtime_error(base::Join({problems_.begin(), problems_.end()}, "\n"));
-    if (result_.world.meshes.empty()) throw std::runtime_error(file_.string() + ": has no visuals");
     result_.warnings = warnings_.Summed();
+    if (result_.world.meshes.empty())
+      throw std::runtime_error(base::Join(result_.warnings, "\n") + (result_.warnings.empty() ? "" : "\n") +
+                               file_.string() + ": has no visuals that are read");
     return std::move(result_);
   }
 

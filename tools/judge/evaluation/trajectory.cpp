@@ -18,6 +18,24 @@ constexpr double kNormTolerance = 1e-3;
 constexpr double kSamePosition = 0.01;                  // [m]
 constexpr double kSameOrientation = 0.017453292519943;  // 1 degree
 
+// A row whose position and quaternion are nan, as data sets write where they have no truth.
+bool IsWithoutPose(const Line& line) {
+  return line.tokens.size() == 8 &&
+         std::ranges::all_of(line.tokens.begin() + 1, line.tokens.end(), [](const Token& token) {
+           const std::optional<double> number = base::ParseNumber(token.text);
+           return number && std::isnan(*number);
+         });
+}
+
+// Whether all stamps are whole seconds, 10 s and more apart.
+bool AreFarApart(const Trajectory& trajectory) {
+  constexpr std::int64_t kSecond_ns = 1'000'000'000;
+  const auto is_near = [](const StampedPose& a, const StampedPose& b) {
+    return b.stamp_ns - a.stamp_ns < 10 * kSecond_ns || a.stamp_ns % kSecond_ns != 0 || b.stamp_ns % kSecond_ns != 0;
+  };
+  return trajectory.size() > 2 && std::ranges::adjacent_find(trajectory, is_near) == trajectory.end();
+}
+
 // A line per entry: its stamp and its numbers.
 template <class Entries, class NumbersOf>
 void Write(const std::filesystem::path& file, const char* header, const Entries& entries, const NumbersOf& numbers_of) {
@@ -43,7 +61,7 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
   Problems problems;
   Trajectory trajectory;
   base::PoseTable table(reading == Reading::euroc);
-  int unordered = 0;
+  int unordered = 0, without_pose = 0;
   for (const Line& text : Lines(file, '\n')) {
     Line line{text.number, {}};
     std::string other_kind;
@@ -53,6 +71,11 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
     if (!other_kind.empty())
       throw InputError({file.string() + ":" + std::to_string(line.number) + ":1: " + other_kind});
     if (line.tokens.empty()) continue;
+    if (IsWithoutPose(line)) {
+      if (++without_pose == 1)
+        problems.Add(file, line.number, line.tokens[1].column, "the pose is nan: leave out such rows (`grep -vi nan`)");
+      continue;
+    }
     std::array<double, 7> n{};
     const auto parsed = ParseRow(file, line, "timestamp tx ty tz qx qy qz qw", n, problems);
     if (!parsed) continue;
@@ -85,6 +108,10 @@ Trajectory ReadTrajectory(const std::filesystem::path& file, Reading reading) {
   }
   problems.ThrowIfAny();
   if (trajectory.empty()) throw InputError({file.string() + ": holds no pose"});
+  if (reading != Reading::as_written && AreFarApart(trajectory))
+    throw InputError({file.string() +
+                      ": all poses are 10 s and more apart: stamps are seconds; name another unit in a header "
+                      "(# timestamp_ms tx ty tz qx qy qz qw)"});
   return trajectory;
 }
 

@@ -100,12 +100,23 @@ TEST(ReadTrajectory, OtherKindsAreRefusedInOneSentence) {
            {"1403636579763555584" + pose + "1403636579813555456" + pose, "nanoseconds: divide the times by 1e9"},
            {"1403636579763" + pose + "1403636579813" + pose, "milliseconds"},
            {"1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 0\n", "t.txt:1:1: twelve numbers a line are KITTI"},
+           {"0" + pose + "50" + pose + "100" + pose, "all poses are 10 s and more apart: stamps are seconds"},
+           {"0.0" + pose + "33333333.0" + pose + "66666666.0" + pose, "all poses are 10 s and more apart"},
+           {"1 nan nan nan nan nan nan nan\n2" + pose + "3 nan nan nan nan nan nan nan\n",
+            "t.txt:1:3: the pose is nan"},
            {"1,2,3\n4,5,6\n", "t.txt:1:1: 3 columns where 8 are expected"},
            {std::string("\xff\xfe#\0\n\0", 6), "t.txt: is a text in UTF-16"}}) {
     const std::string said = Complaint(text);
     EXPECT_THAT(said, HasSubstr(words));
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 0) << said;
   }
+}
+
+// Keyframes may be far apart, and stamps between whole seconds.
+TEST(ReadTrajectory, StampsFarApart) {
+  const std::string pose = " 0 0 0 0 0 0 1\n";
+  EXPECT_EQ(Complaint("0" + pose + "50" + pose + "51" + pose), "");
+  EXPECT_EQ(Complaint("0.5" + pose + "50.25" + pose + "100" + pose), "");
 }
 
 // Rows that a spreadsheet exports without values.

@@ -423,6 +423,20 @@ constexpr char kInstance[] =
     "<node id='n'><instance_geometry url='#g'><bind_material><technique_common><instance_material symbol='m' "
     "target='#m'/></technique_common></bind_material></instance_geometry></node>";
 
+// A mesh without a material is white, not as the file's first material is.
+TEST(MeshFormats, ColladaMeshesWithoutAMaterial) {
+  const Folder folder;
+  const std::string bare = "<node id='o'><translate>0 0 1</translate><instance_geometry url='#g'/></node>",
+                    red = "<lambert><diffuse><color>1 0 0 1</color></diffuse></lambert>";
+  std::string text = ColladaTriangle("Y_UP", red, bare + kInstance);
+  for (const std::string name : {"<triangles material='", "symbol='"}) text.insert(text.find(name) + name.size(), "s");
+  const Scene scene = LoadScene(WorldOf(folder.Write("m.dae", text)));
+  std::vector<glm::vec3> colors;
+  for (const Mesh& mesh : scene.meshes)
+    colors.push_back(scene.materials.at(static_cast<std::size_t>(mesh.material)).base_color);
+  EXPECT_THAT(colors, testing::UnorderedElementsAre(glm::vec3(1), glm::vec3(1, 0, 0)));
+}
+
 // Blanks about the axis; shaders that glow and have no diffuse colour are black otherwise.
 TEST(MeshFormats, ColladaAxisWithBlanksAndShadersThatGlowAlone) {
   for (const std::string shader : {"lambert", "constant", "phong"}) {
@@ -673,6 +687,7 @@ TEST(MeshFormats, X3dWarnings) {
   EXPECT_THAT(warnings("<LOD><Shape/></LOD><Text string='a'/>"), ElementsAre(HasSubstr("all in them: LOD, Text")));
   EXPECT_THAT(warnings("<TextureTransform rotation='1'/>"), ElementsAre(HasSubstr("turns")));
   EXPECT_THAT(warnings("<TextureTransform scale='2 2'/>"), IsEmpty());
+  EXPECT_THAT(warnings("<TextureTransform rotation='0' center='0 0' scale='1 1' translation='0.5 0'/>"), IsEmpty());
   EXPECT_THAT(warnings("<Shape DEF='a'/><Shape USE='a'/>"), ElementsAre(HasSubstr("several places (USE)")));
   EXPECT_THAT(warnings("<!-- <IndexedFaceSet coordIndex='7'> <Inline url='b.x3d'/> --><Group/>"), IsEmpty());
   EXPECT_THAT(warnings("<Inline url='b.x3d'/>"), ElementsAre(HasSubstr("(Inline) are not read")));
@@ -680,6 +695,33 @@ TEST(MeshFormats, X3dWarnings) {
   std::vector<std::string> none;
   EXPECT_EQ(X3dForAssimp("<MetadataString value='\"a\" \"b\"' name='n'/>", none),
             "<MetadataString value='a' name='n'/>");
+}
+
+// A file's unit of length, a cone's apex, and shapes without a material beside one that has it.
+TEST(MeshFormats, X3dUnitConeAndPlainShapes) {
+  const Folder folder;
+  const Scene scene = LoadScene(WorldOf(folder.Write(
+      "m.x3d",
+      "<X3D><head><unit category='length' name='half' conversionFactor='0.5'/></head><Scene><Shape><Appearance>"
+      "<Material diffuseColor='1 0 0'/></Appearance><Box/></Shape><Shape><Cone/></Shape></Scene></X3D>")));
+  ASSERT_THAT(scene.meshes, SizeIs(2));
+  for (const Mesh& mesh : scene.meshes) {
+    const bool is_cone = mesh.positions.size() != scene.meshes[0].positions.size();
+    const glm::vec3 color = scene.materials.at(static_cast<std::size_t>(mesh.material)).base_color;
+    EXPECT_EQ(color, is_cone ? glm::vec3(1) : glm::vec3(1, 0, 0));
+    float high = 0, wide = 0;
+    for (const glm::vec3& x : mesh.positions) {
+      high = std::max(high, x.y);
+      if (x.y > 0) wide = std::max(wide, glm::length(glm::vec2(x.x, x.z)));
+    }
+    EXPECT_FLOAT_EQ(high, 0.5f);
+    EXPECT_NEAR(wide, is_cone ? 0 : std::sqrt(0.5f), 1e-6);
+  }
+  EXPECT_THAT(ProblemTextOf([&] {
+                LoadScene(WorldOf(
+                    folder.Write("d.x3d", "<X3D><Scene><Shape><Disk2D innerRadius='0.5'/></Shape></Scene></X3D>")));
+              }),
+              HasSubstr("innerRadius"));
 }
 
 // Lists that a fan shares with a set of faces, whose corners get positions of their own; an index without a position.

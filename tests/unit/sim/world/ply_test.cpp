@@ -172,6 +172,16 @@ TEST_F(Ply, PicturesByANumberThatIsNotThere) {
   EXPECT_THAT(scene.warnings, testing::ElementsAre(HasSubstr("2 of its faces name a picture (texnumber)")));
 }
 
+TEST_F(Ply, FacesWithoutAListThatIsKnownAndColoursRoundedAboveOne) {
+  const auto text = [](const std::string& list, const std::string& red) {
+    return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "property float red\nproperty float green\nproperty float blue\nelement face 1\nproperty list uchar int " +
+           list + "\nend_header\n0 0 0 " + red + " 1 1\n1 0 0 1 1 1\n0 1 0 1 1 1\n3 0 1 2\n";
+  };
+  EXPECT_THAT(Problems(text("indices", "1")), HasSubstr("no list vertex_indices"));
+  EXPECT_THAT(Load(text("vertex_index", "1.0000001")).warnings, testing::IsEmpty());
+}
+
 TEST_F(Ply, CloudsAndSplatsAreRefusedByName) {
   const std::string head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n";
   EXPECT_THAT(Problems(head + "property float z\nend_header\n0 0 0\n"), HasSubstr("it is a point cloud"));
