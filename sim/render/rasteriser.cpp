@@ -54,6 +54,8 @@ std::vector<std::string> UnsupportedFeatures(const Scene& scene) {
     has_visible = has_visible || (rect != nullptr && rect->visible);
     has_flicker = has_flicker || FlickerOf(lamp).depth > 0;
   }
+  if (std::ranges::any_of(scene.meshes, &Mesh::one_sided))
+    features.emplace_back("of faces that coincide one is seen from both sides");
   if (has_flicker) features.emplace_back("lamps do not flicker");
   if (has_visible) features.emplace_back("visible lamps are not seen");
   if (scene.sky) features.emplace_back("the sky is not seen; world.background is");

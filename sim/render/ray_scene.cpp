@@ -20,12 +20,12 @@ void FilterHits(const RTCFilterFunctionNArguments* arguments, bool shadow) {
   for (unsigned i = 0; i < n; ++i) {
     if (arguments->valid[i] == 0) continue;
     const RayScene::Filter& filter = filters[RTCHitN_primID(arguments->hit, n, i)];
-    if (filter.lamp) {
+    if (filter.lamp || filter.one_sided) {
       const float along = RTCHitN_Ng_x(arguments->hit, n, i) * RTCRayN_dir_x(arguments->ray, n, i) +
                           RTCHitN_Ng_y(arguments->hit, n, i) * RTCRayN_dir_y(arguments->ray, n, i) +
                           RTCHitN_Ng_z(arguments->hit, n, i) * RTCRayN_dir_z(arguments->ray, n, i);
-      if (shadow || along > 0) arguments->valid[i] = 0;
-      continue;
+      if ((filter.lamp && shadow) || along > 0) arguments->valid[i] = 0;
+      if (filter.lamp || arguments->valid[i] == 0) continue;
     }
     const float u = RTCHitN_u(arguments->hit, n, i), v = RTCHitN_v(arguments->hit, n, i);
     const float alpha = filter.factor * (filter.alpha != nullptr ? filter.alpha->Alpha(At(filter.uv, u, v)) : 1.0f);

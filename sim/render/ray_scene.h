@@ -117,12 +117,12 @@ class RayScene {
     OverTriangle<2> uv;
     const Texture* alpha = nullptr;
     float factor = 1.0f, cutoff = 0.0f;
-    bool lamp = false;
+    bool lamp = false, one_sided = false;
   };
 
  private:
   void AppendTextures(const Scene& scene);
-  // Returns the first triangles of what is there everywhere and of cut-outs, which come behind.
+  // Returns the first triangles of what is there everywhere, and of cut-outs and one-sided meshes, which come behind.
   std::array<std::uint32_t, 2> AppendMeshes(const Scene& scene, const std::vector<Mesh>& meshes,
                                             std::size_t mesh_index);
   void AppendMesh(const Scene& scene, const Mesh& mesh, const Material& material, std::size_t mesh_index, bool lamp);

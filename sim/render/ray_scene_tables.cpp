@@ -52,11 +52,12 @@ void RayScene::AppendTextures(const Scene& scene) {
 std::array<std::uint32_t, 2> RayScene::AppendMeshes(const Scene& scene, const std::vector<Mesh>& meshes,
                                                     std::size_t mesh_index) {
   std::array<std::uint32_t, 2> first{};
-  for (const bool cut_out : {false, true}) {
-    first[cut_out] = static_cast<std::uint32_t>(triangles_.size());
+  for (const bool filtered : {false, true}) {
+    first[filtered] = static_cast<std::uint32_t>(triangles_.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
       const Material& material = scene.materials[static_cast<std::size_t>(meshes[i].material)];
-      if (IsCutOut(scene, material) == cut_out) AppendMesh(scene, meshes[i], material, mesh_index + i, false);
+      if ((meshes[i].one_sided || IsCutOut(scene, material)) == filtered)
+        AppendMesh(scene, meshes[i], material, mesh_index + i, false);
     }
   }
   return first;
@@ -110,7 +111,9 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& 
       tangents_.push_back(tangents);
     }
     if (any_colors_) colors_.push_back(ColorsOver(mesh, t));
-    if (cut_out || lamp) filters_.push_back({s.uv, alpha, material.alpha, material.alpha_cutoff, lamp});
+    if (cut_out || lamp || mesh.one_sided)
+      filters_.push_back(
+          {s.uv, alpha, cut_out ? material.alpha : 1.0f, cut_out ? material.alpha_cutoff : 0.0f, lamp, mesh.one_sided});
   }
 }
 

@@ -13,6 +13,7 @@
 #include <sstream>
 #include <utility>
 
+#include "sim/world/coincident_faces.h"
 #include "sim/world/mesh_import.h"
 #include "sim/world/mesh_material.h"
 #include "sim/world/texture_file.h"
@@ -76,6 +77,7 @@ class FileReader {
     }
     if (file_.loading.problems.size() == problems_before && file_.scene.meshes.size() == meshes_before)
       file_.Problem("has no triangles" + why_none_);
+    SeparateCoincidentFaces(file_.scene.meshes, meshes_before);
   }
 
  private:

@@ -38,7 +38,8 @@ struct Material {
   float alpha = 1.0f, alpha_cutoff = 0.0f;
 };
 
-// Per-vertex arrays are empty or as long as positions. Surfaces are two-sided: what is seen faces the viewer.
+// Per-vertex arrays are empty or as long as positions. Surfaces are two-sided: what is seen faces the viewer,
+// but for those that are one_sided.
 struct Mesh {
   std::string name;
   std::vector<glm::vec3> positions;  // in W [m], or in O
@@ -46,7 +47,8 @@ struct Mesh {
   std::vector<glm::vec2> uvs;     // (0, 0) = upper left corner of the texture's image, v down; repeats outside [0, 1)
   std::vector<glm::vec3> colors;  // linear
   std::vector<glm::uvec3> triangles;
-  int material = 0;  // index in Scene::materials
+  int material = 0;        // index in Scene::materials
+  bool one_sided = false;  // seen from the front alone: a triangle turned the other way coincides with each
 };
 
 // A rigid body on its path: X_W = T_WO(t) X_O, T_WO(t) = motion->At(t).pose.

@@ -1,5 +1,6 @@
 target_sources(vobench_sim PRIVATE
   ${CMAKE_CURRENT_LIST_DIR}/assimp_reader.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/coincident_faces.cpp
   ${CMAKE_CURRENT_LIST_DIR}/fbx_text.cpp
   ${CMAKE_CURRENT_LIST_DIR}/file_cameras.cpp
   ${CMAKE_CURRENT_LIST_DIR}/gltf_file.cpp
