@@ -54,7 +54,8 @@ std::vector<std::string> UnsupportedFeatures(const Scene& scene) {
     has_visible = has_visible || (rect != nullptr && rect->visible);
     has_flicker = has_flicker || FlickerOf(lamp).depth > 0;
   }
-  if (std::ranges::any_of(scene.meshes, &Mesh::one_sided))
+  const auto any_one_sided = [](const auto& of) { return std::ranges::any_of(of.meshes, &Mesh::one_sided); };
+  if (any_one_sided(scene) || std::ranges::any_of(scene.objects, any_one_sided))
     features.emplace_back("of faces that coincide one is seen from both sides");
   if (has_flicker) features.emplace_back("lamps do not flicker");
   if (has_visible) features.emplace_back("visible lamps are not seen");

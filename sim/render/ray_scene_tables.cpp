@@ -112,8 +112,7 @@ void RayScene::AppendMesh(const Scene& scene, const Mesh& mesh, const Material& 
     }
     if (any_colors_) colors_.push_back(ColorsOver(mesh, t));
     if (cut_out || lamp || mesh.one_sided)
-      filters_.push_back(
-          {s.uv, alpha, cut_out ? material.alpha : 1.0f, cut_out ? material.alpha_cutoff : 0.0f, lamp, mesh.one_sided});
+      filters_.push_back({s.uv, alpha, material.alpha, material.alpha_cutoff, lamp, mesh.one_sided});
   }
 }
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <map>
 #include <tuple>
 
 namespace sim {
@@ -48,15 +47,16 @@ Mesh Taken(Mesh& mesh, const std::vector<bool>& is_marked) {
   taken.name = mesh.name;
   taken.material = mesh.material;
   taken.one_sided = true;
-  std::map<std::uint32_t, std::uint32_t> place;  // of a vertex
+  constexpr std::uint32_t kNone = ~0U;
+  std::vector<std::uint32_t> place(mesh.positions.size(), kNone);
   const auto take = [&](std::uint32_t v) {
-    const auto [at, is_new] = place.try_emplace(v, static_cast<std::uint32_t>(taken.positions.size()));
-    if (!is_new) return at->second;
+    if (place[v] != kNone) return place[v];
+    place[v] = static_cast<std::uint32_t>(taken.positions.size());
     taken.positions.push_back(mesh.positions[v]);
     if (!mesh.normals.empty()) taken.normals.push_back(mesh.normals[v]);
     if (!mesh.uvs.empty()) taken.uvs.push_back(mesh.uvs[v]);
     if (!mesh.colors.empty()) taken.colors.push_back(mesh.colors[v]);
-    return at->second;
+    return place[v];
   };
   std::vector<glm::uvec3> kept;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -113,12 +113,10 @@ void SeparateCoincidentFaces(std::vector<Mesh>& meshes, std::size_t first) {
   }
   for (std::size_t m = first; m < is_marked.size(); ++m) {
     if (is_marked[m].empty()) continue;
-    Mesh taken = Taken(meshes[m], is_marked[m]);
-    if (meshes[m].triangles.empty()) {
-      meshes[m] = std::move(taken);
-    } else {
-      meshes.push_back(std::move(taken));
-    }
+    if (std::ranges::count(is_marked[m], false) == 0)
+      meshes[m].one_sided = true;
+    else
+      meshes.push_back(Taken(meshes[m], is_marked[m]));
   }
 }
 

@@ -334,11 +334,11 @@ double NumberOr(std::string_view tag, const std::string& name, double value) {
 std::string FacesOfCone(std::string_view tag) {
   constexpr int kSides = 32;
   const double radius = NumberOr(tag, "bottomRadius", 1), top = NumberOr(tag, "height", 2) / 2;
-  std::string points = "0 " + std::to_string(top) + " 0 ", sides, bottom;
+  const auto text = [](double x) { return base::Significant(x, 9) + " "; };
+  std::string points = "0 " + text(top) + "0 ", sides, bottom;
   for (int i = 0; i < kSides; ++i) {
     const double turn = 2 * std::numbers::pi * i / kSides;
-    points += std::to_string(radius * std::sin(turn)) + " " + std::to_string(-top) + " " +
-              std::to_string(radius * std::cos(turn)) + " ";
+    points += text(radius * std::sin(turn)) + text(-top) + text(radius * std::cos(turn));
     sides += "0 " + std::to_string(i + 1) + " " + std::to_string((i + 1) % kSides + 1) + " -1 ";
     bottom += std::to_string(kSides - i) + " ";
   }
@@ -370,19 +370,20 @@ std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnin
       done = std::min(end, text.size());
     };
     if (IsTag(tag, "<unit") && Attribute(tag, "category") == "length") unit = NumberOr(tag, "conversionFactor", 1);
-    const std::string scale = std::to_string(unit) + " ";
-    if (unit != 1 && (tag == "<Scene" || IsTag(tag, "<Scene")))
-      replace(end_of_tag, end_of_tag, "<Transform scale='" + scale + scale + scale + "'>");
+    const auto is = [&](const std::string& node) { return IsTag(tag, node) || tag == node; };
+    const std::string scale = base::Significant(unit, 9) + " ";
+    if (unit != 1 && is("<Scene")) replace(end_of_tag, end_of_tag, "<Transform scale='" + scale + scale + scale + "'>");
     if (unit != 1 && tag == "</Scene") replace(begin_of_tag, begin_of_tag, "</Transform>");
-    if (IsTag(tag, "<Cone") || tag == "<Cone" || tag == "<Cone/")
-      replace(begin_of_tag, tag.ends_with('/') ? end_of_tag - 1 : text.find("</Cone", end_of_tag) + 6,
-              FacesOfCone(tag));
+    if (is("<Cone") || tag == "<Cone/") {
+      const std::size_t end = tag.ends_with('/') ? end_of_tag - 1 : text.find('>', text.find("</Cone", end_of_tag));
+      if (end < text.size()) replace(begin_of_tag, end, FacesOfCone(tag));
+    }
     if (IsTag(tag, "<Disk2D") && NumberOr(tag, "innerRadius", 0) != 0)
       throw std::runtime_error("it has a Disk2D with an innerRadius, which is not read: export it as faces");
     // Without a material assimp takes another shape's.
     constexpr std::string_view kWhite = "<Material diffuseColor='1 1 1'/>";
     for (const std::string node : {"Shape", "Appearance"}) {
-      if ((tag != "<" + node && !IsTag(tag, "<" + node)) || tag.ends_with('/') || end_of_tag < done) continue;
+      if (!is("<" + node) || tag.ends_with('/') || end_of_tag < done) continue;
       const std::string_view inside =
           text.substr(end_of_tag, std::min(text.find("</" + node, end_of_tag), text.size()) - end_of_tag);
       const bool is_shape = node == "Shape";
@@ -396,22 +397,17 @@ std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnin
       if (!IsTag(tag, "<" + node) || tag.ends_with('/') || begin_of_tag < done) continue;
       const std::size_t end = text.find("</" + node, end_of_tag);
       if (end == std::string_view::npos) continue;
-      out.append(text.substr(done, begin_of_tag - done));
       const std::string set =
           node == "IndexedLineSet" ? "" : WithOwnCorners(text, tag, text.substr(end_of_tag, end - end_of_tag));
-      out.append(set);
-      done = std::min(end + 2 + node.size() + (set.empty() ? 1 : 0), text.size());
+      replace(begin_of_tag, end + 2 + node.size() + (set.empty() ? 1 : 0), set);
     }
     for (const std::string_view node : kLists) {  // of other sets: the definition may have been replaced
       const std::string_view from = IsTag(tag, node) && begin_of_tag >= done ? Defined(text, tag, node) : tag;
       if (from == tag) continue;
       std::string copy(from.substr(0, from.size() - (from.ends_with('/') ? 1 : 0)));
       copy.replace(copy.find("DEF"), 3, "id");
-      out.append(text.substr(done, begin_of_tag - done));
-      out.append(copy + (tag.ends_with('/') ? "/" : ""));
-      done = begin_of_tag + tag.size();
+      replace(begin_of_tag, begin_of_tag + tag.size(), copy + (tag.ends_with('/') ? "/" : ""));
     }
-    const auto is = [&](const std::string& node) { return IsTag(tag, node) || tag == node; };
     for (const auto& [node, known] : {std::pair<std::string, const char*>{"Anchor", "Group"},
                                       {"Billboard", "Group"},
                                       {"Collision", "Group"},
@@ -420,9 +416,8 @@ std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnin
                                       {"CADFace", "Group"},
                                       {"CADPart", "Transform"}}) {
       if ((!is("<" + node) && tag != "</" + node) || begin_of_tag < done) continue;
-      out.append(text.substr(done, text.find(node, begin_of_tag) - done));
-      out.append(known);
-      done = text.find(node, begin_of_tag) + node.size();
+      const std::size_t at = text.find(node, begin_of_tag);
+      replace(at, at + node.size(), known);
     }
     for (const std::string node :
          {"LOD", "Text", "ProtoInstance", "Layer", "LayerSet", "LayoutLayer", "GeoLocation", "GeoTransform", "GeoLOD",
@@ -446,11 +441,10 @@ std::string X3dForAssimp(std::string_view text, std::vector<std::string>& warnin
       const std::size_t begin = first.find('"') + 1;
       if (begin == 0) continue;
       const auto at = static_cast<std::size_t>(texts.data() - text.data());
-      if (at < done) continue;
-      out.append(text.substr(done, at - done));
+      std::string name;
       for (const char c : first.substr(begin, first.find('"', begin) - begin))
-        out += c == ' ' ? "%20" : std::string(1, c);
-      done = at + texts.size();
+        name += c == ' ' ? "%20" : std::string(1, c);
+      replace(at, at + texts.size(), name);
     }
   });
   if (has_copies) warnings.push_back("nodes that stand in several places (USE) are drawn in the first alone");

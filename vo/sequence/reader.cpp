@@ -37,12 +37,13 @@ std::optional<std::int64_t> StampInNanoseconds(std::string_view text) {
   return stamp_ns && *stamp_ns >= 0 && *stamp_ns <= base::kLatest_ns ? stamp_ns : std::nullopt;
 }
 
-// List of frames, one per line: the first word is the stamp; of TUM's monocular data set the second, after the name.
+// List of frames, one per line: the first word is the stamp.
 struct ListFormat {
   fs::path list, images;  // file names are relative to `images`
   std::size_t words;
   std::optional<std::int64_t> (*stamp)(std::string_view);
   std::string not_a_stamp, expected;
+  bool is_monocular = false;  // TUM's data set: `number time`, and mostly an exposure
 };
 
 // Whether an association's first words are seconds: one has a point. ICL-NUIM's have none, TUM's most.
@@ -72,7 +73,8 @@ ListFormat FormatOf(const fs::path& folder, int camera) {
         return {folder / "times.txt", folder / images, 1, StampInSeconds, "a time in seconds", "time"};
     }
     if (fs::exists(folder / "times.txt") && fs::is_directory(folder / "images"))
-      return {folder / "times.txt", folder / "images", 3, StampInSeconds, "a time in seconds", "number time exposure"};
+      return {folder / "times.txt", folder / "images",      2,   StampInSeconds,
+              "a time in seconds",  "number time exposure", true};
     if (fs::exists(folder / "mav0")) {
       const fs::path of = folder / ("mav0/cam" + std::to_string(camera));
       return {of / "data.csv", of / "data", 2, StampInNanoseconds, "a time stamp in nanoseconds", "timestamp,filename"};
@@ -178,7 +180,6 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
   if (!in)
     throw std::runtime_error(list.string() +
                              ": cannot be read (a sequence folder has one, see docs/sequence_format.md)");
-  const bool is_monocular = format.words == 3;  // TUM's data set
   std::vector<std::string> problems;
   std::string line;
   int number = 0, last_number = 0;
@@ -191,13 +192,11 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
       throw std::runtime_error(list.string() + ": " + problem);
     std::vector<base::Word> words = base::SplitWords(number == 1 ? base::WithoutMark(line) : line);
     if (words.empty() || base::IsComment(words[0].text)) continue;
+    if (format.is_monocular && (words.size() == 2 || words.size() == 3)) words = {words[1], words[0]};
     if (format.words == 2 && words.size() > 2) JoinName(format.images, words);
     if (entries_.empty() && problems.empty() && words[0].text.starts_with("time")) continue;  // names of columns
-    if (is_monocular && words.size() == 2) words.push_back(words[1]);                         // of an unknown exposure
-    const std::size_t of_image = words.size() == format.words && !is_monocular ? ImageWord(words, format.images) : 0;
-    const std::size_t of_stamp =
-        is_monocular ? std::min<std::size_t>(1, words.size() - 1) : std::max<std::size_t>(1, of_image) - 1;
-    const std::string stamp(words[of_stamp].text);
+    const std::size_t of_image = words.size() == format.words ? ImageWord(words, format.images) : 0;
+    const std::string stamp(words[of_image == 0 ? 0 : of_image - 1].text);
     const auto stamp_ns = format.stamp(stamp);
     if (!stamp_ns) {
       const std::string unit = format.stamp != StampInNanoseconds ? base::UnitOfStamp(stamp) : "";
@@ -211,10 +210,10 @@ SequenceReader::SequenceReader(const fs::path& folder, Images images, int camera
     }
     if (!entries_.empty() && *stamp_ns <= entries_.back().stamp_ns)
       complain("time stamp " + stamp + " does not increase over line " + std::to_string(last_number));
-    const bool is_numbered = format.words == 1 || is_monocular;
-    const fs::path image = format.images / (is_monocular  ? NumberedName(format.images, words[0].text)
-                                            : is_numbered ? NumberedName(entries_.size())
-                                                          : NameOf(words[of_image]));
+    const bool is_numbered = format.words == 1;
+    const fs::path image = format.images / (format.is_monocular ? NumberedName(format.images, words[of_image].text)
+                                            : is_numbered       ? NumberedName(entries_.size())
+                                                                : NameOf(words[of_image]));
     std::error_code error;  // a name that is too long is reported like other problems
     if (of_image == 0 && !is_numbered) {
       complain("both pictures are depth (grey of 16 bits)");

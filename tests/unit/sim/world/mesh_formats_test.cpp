@@ -747,6 +747,7 @@ TEST(MeshFormats, X3dSharedLists) {
   std::vector<std::string> none;
   EXPECT_THROW(X3dForAssimp(no_list, none), std::runtime_error);
   EXPECT_EQ(X3dForAssimp("<IndexedLineSet a=''></IndexedLineSet", none), "");
+  EXPECT_EQ(X3dForAssimp("<Cone a=''><Cone a=''>", none), "<Cone a=''><Cone a=''>") << "cut off";
   EXPECT_THAT(ProblemTextOf([&] { LoadScene(file("0 1 4 -1")); }), HasSubstr("not in its list (Coordinate)"));
 }
 
